@@ -1,0 +1,18 @@
+# Finds FLINT (2.9 ships neither pkg-config nor CMake files) and offers FLINT::FLINT.
+find_path(FLINT_INCLUDE_DIR NAMES flint/fmpq.h)
+find_library(FLINT_LIBRARY NAMES flint)
+find_library(FLINT_MPFR_LIBRARY NAMES mpfr)
+find_library(FLINT_GMP_LIBRARY NAMES gmp)
+
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(FLINT REQUIRED_VARS FLINT_LIBRARY FLINT_INCLUDE_DIR
+                                  FLINT_MPFR_LIBRARY FLINT_GMP_LIBRARY)
+mark_as_advanced(FLINT_INCLUDE_DIR FLINT_LIBRARY FLINT_MPFR_LIBRARY FLINT_GMP_LIBRARY)
+
+if(FLINT_FOUND AND NOT TARGET FLINT::FLINT)
+  add_library(FLINT::FLINT UNKNOWN IMPORTED)
+  set_target_properties(FLINT::FLINT PROPERTIES
+    IMPORTED_LOCATION "${FLINT_LIBRARY}"
+    INTERFACE_INCLUDE_DIRECTORIES "${FLINT_INCLUDE_DIR}"
+    INTERFACE_LINK_LIBRARIES "${FLINT_MPFR_LIBRARY};${FLINT_GMP_LIBRARY}")
+endif()

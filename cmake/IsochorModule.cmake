@@ -1,0 +1,53 @@
+# One helper for each kind of target, so that every layer is declared the same way.
+
+# Compile options shared by all of Isochor's own targets.
+add_library(isochor_options INTERFACE)
+target_compile_features(isochor_options INTERFACE cxx_std_17)
+target_compile_options(isochor_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  -ffp-contract=off  # fused multiply-add only where the code asks for it
+  $<$<BOOL:${ISOCHOR_WERROR}>:-Werror>)
+install(TARGETS isochor_options EXPORT isochor-targets)
+
+# isochor_add_module(<layer> [SOURCES ...] HEADERS ... [DEPENDS layer ...] [LINK public ...] [PRIVATE_LINK ...])
+# declares the library isochor::<layer> from the files of src/isochor/<layer>.
+function(isochor_add_module layer)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS;DEPENDS;LINK;PRIVATE_LINK")
+  set(target isochor_${layer})
+  if(arg_SOURCES)
+    set(scope PUBLIC)
+    add_library(${target} ${arg_SOURCES})
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:isochor_options> ${arg_PRIVATE_LINK})
+  else()
+    set(scope INTERFACE)
+    add_library(${target} INTERFACE)
+  endif()
+  add_library(isochor::${layer} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES
+    EXPORT_NAME ${layer}
+    POSITION_INDEPENDENT_CODE ON
+    VERIFY_INTERFACE_HEADER_SETS ON)
+  target_compile_features(${target} ${scope} cxx_std_17)
+  target_sources(${target} ${scope}
+    FILE_SET HEADERS BASE_DIRS "${PROJECT_SOURCE_DIR}/src" FILES ${arg_HEADERS})
+  list(TRANSFORM arg_DEPENDS PREPEND isochor_)
+  target_link_libraries(${target} ${scope} ${arg_DEPENDS} ${arg_LINK})
+  install(TARGETS ${target} EXPORT isochor-targets
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+endfunction()
+
+# isochor_add_tests(<layer> SOURCES ... [LINK ...]) declares the test program of one layer.
+function(isochor_add_tests layer)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
+  set(target isochor_${layer}_tests)
+  add_executable(${target} ${arg_SOURCES})
+  target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
+  target_link_libraries(${target} PRIVATE isochor_options ${arg_LINK} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${target} PRIVATE
+    ISOCHOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    ISOCHOR_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  gtest_discover_tests(${target} TEST_PREFIX "${layer}." DISCOVERY_TIMEOUT 120
+    PROPERTIES TIMEOUT 600 LABELS "${layer}")
+endfunction()

@@ -1,0 +1,138 @@
+// PatchModel: what a closed shape is to Isochor.
+//
+// A table of control points and patches that index it. Two patches are joined where they use the
+// same points (`.isochor.json`), or where `ties` say that two points move together (a B-rep, whose
+// faces have poles of their own that agree only within a tolerance). Every edit is a displacement
+// of the points; tied points get the same displacement, so existing gaps stay bit for bit.
+//
+// Grid indices are u-major: patch.points[i * #v + j], i along u, j along v.
+#pragma once
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "isochor/base/vec3.h"
+#include "isochor/bspline/surface.h"
+
+namespace isochor {
+
+// A rectangle of parameters, closed.
+struct UvBox {
+  double u_min = 0.0, u_max = 0.0, v_min = 0.0, v_max = 0.0;
+};
+
+// The part of a patch that a trimmed face keeps. Empty: the whole patch.
+struct TrimRegion {
+  std::vector<UvBox> boundary;         // small boxes that together cover every trimming curve;
+                                       // edges that run along a whole natural side are left out
+  std::vector<std::vector<Uv>> loops;  // closed polylines of all loops, for the inside test:
+                                       // inside = odd number of crossings
+  bool empty() const { return loops.empty() && boundary.empty(); }
+};
+
+// One tensor-product patch of a model.
+struct Patch {
+  std::string name;    // as users write it; may be empty or shared by several patches
+  std::string handle;  // "face:12", unique in the model
+  KnotVector u_knots, v_knots;
+  std::vector<int> points;           // #u x #v, indices into PatchModel::points
+  std::vector<double> weights;       // #u x #v, or empty; constant during edits
+  bool reversed = false;             // true: the outward normal is -(S_u x S_v)
+  std::vector<std::string> aliases;  // further names: "#1234", "wing/face:3"
+  TrimRegion trim;
+
+  int u_size() const { return u_knots.size(); }
+  int v_size() const { return v_knots.size(); }
+  int point(int i, int j) const { return points[static_cast<size_t>(i) * v_size() + j]; }
+  double sign() const { return reversed ? -1.0 : 1.0; }
+};
+
+// One side of one patch.
+struct SideRef {
+  int patch = 0;
+  Side side = Side::kUBegin;
+  friend bool operator==(const SideRef& a, const SideRef& b) {
+    return a.patch == b.patch && a.side == b.side;
+  }
+};
+
+// How smoothly two sides (or the two sides of a knot line) meet, as measured. Ordered.
+enum class Smoothness {
+  kSharp,      // positions only
+  kAlmost,     // normals within kAlmostSmoothAngle: neither sharp nor smooth, kept as it is
+  kTangent,    // normals within kSmoothAngle (G1)
+  kCurvature,  // and normal curvatures agree (G2)
+};
+const char* name_of(Smoothness smoothness);  // "C0", "almost G1", "G1", "G2"
+
+// Two sides that carry the same curve (both sides may belong to one patch: a seam).
+struct Join {
+  SideRef a, b;
+  bool opposed = false;   // the running parameters go in opposite directions
+  bool matching = false;  // same degree, knots and weights along the curve: poles tie one to one
+  std::string mismatch;   // when not matching: why, in words
+  double max_gap = 0.0;   // length unit
+  double max_angle_rad = 0.0;       // between the normals
+  double max_curvature_jump = 0.0;  // 1 / length unit
+  Smoothness smoothness = Smoothness::kSharp;
+};
+
+// A side whose neighbour is not part of the model (a face that is not edited).
+struct LockedSide {
+  SideRef side;
+  std::string reason;  // "shares an edge with face:5 (plane), which is not edited"
+  Smoothness smoothness = Smoothness::kSharp;  // towards that neighbour
+};
+
+// A point that must not move (all axes), and why, in words a designer understands.
+struct Lock {
+  int point = 0;
+  int reason = 0;  // index into PatchModel::lock_reasons
+};
+
+struct LockReason {
+  std::string text;
+  bool continuity =
+      false;  // true: only there to keep tangents or curvature ("continuity": "C0" lifts it)
+};
+
+struct PatchModel {
+  std::string unit = "m";
+  std::vector<Vec3> points;
+  std::vector<Patch> patches;
+  std::vector<std::pair<int, int>> ties;  // pairs of points that share one displacement
+  std::vector<Join> joins;
+  std::vector<LockedSide> locked_sides;
+  std::vector<LockReason> lock_reasons;
+  std::vector<Lock> locks;
+
+  // The surface of patch q, with the poles of `points` (default: the model's own).
+  Surface surface(int q) const { return surface(q, points); }
+  Surface surface(int q, const std::vector<Vec3>& at) const;
+
+  // Records that `point` must not move because of `reason`.
+  void lock(int point, const std::string& reason, bool continuity);
+};
+
+// Throws InputError naming the patch and the number when indices, sizes, weights or coordinates are
+// not usable (index out of range, NaN, weights not positive, duplicate handles).
+void validate(const PatchModel& model);
+
+// The length of the diagonal of the box of all points; the scale of all relative tolerances.
+double diagonal(const PatchModel& model);
+
+// Point classes: points that always move together. class_of[i] is the class of point i, classes are
+// numbered by first occurrence. Cost O(#points + #ties).
+struct PointClasses {
+  std::vector<int> class_of;
+  std::vector<int> representative;  // the first point of each class
+};
+PointClasses point_classes(const PatchModel& model);
+
+// The grid indices (i, j) along a side, in the direction of the running parameter.
+// `depth` counts rows inwards: 0 is the boundary row.
+std::vector<std::pair<int, int>> side_indices(const Patch& patch, Side side, int depth = 0);
+
+}  // namespace isochor
