@@ -1,0 +1,88 @@
+// The fields of the patch model and of the solid model, listed for bytes.h.
+#pragma once
+
+#include "isochor/step/bytes.h"
+#include "isochor/step/solid_model.h"
+
+namespace isochor {
+
+template <typename Io>
+void transfer(Io& io, Uv& f) {
+  io(f.u, f.v);
+}
+template <typename Io>
+void transfer(Io& io, UvBox& f) {
+  io(f.u_min, f.u_max, f.v_min, f.v_max);
+}
+template <typename Io>
+void transfer(Io& io, TrimRegion& f) {
+  io(f.boundary, f.loops);
+}
+template <typename Io>
+void transfer(Io& io, SideRef& f) {
+  io(f.patch, f.side);
+}
+template <typename Io>
+void transfer(Io& io, Join& f) {
+  io(f.a, f.b, f.opposed, f.matching, f.mismatch, f.max_gap, f.max_angle_rad, f.max_curvature_jump,
+     f.smoothness);
+}
+template <typename Io>
+void transfer(Io& io, LockedSide& f) {
+  io(f.side, f.reason, f.smoothness);
+}
+template <typename Io>
+void transfer(Io& io, Lock& f) {
+  io(f.point, f.reason);
+}
+template <typename Io>
+void transfer(Io& io, LockReason& f) {
+  io(f.text, f.continuity);
+}
+template <typename Io>
+void transfer(Io& io, PatchModel& f) {
+  io(f.unit, f.points, f.patches, f.ties, f.joins, f.locked_sides, f.lock_reasons, f.locks);
+}
+template <typename Io>
+void transfer(Io& io, FaceFacts& f) {
+  io(f.handle, f.name, f.aliases, f.surface, f.trim, f.bspline, f.rational, f.convertible, f.patch,
+     f.not_editable, f.area, f.flux, f.flux_bound, f.tolerance);
+}
+template <typename Io>
+void transfer(Io& io, EdgeFacts& f) {
+  io(f.faces, f.degenerated, f.length, f.tolerance, f.max_gap, f.max_angle_rad, f.smoothness);
+}
+template <typename Io>
+void transfer(Io& io, ShapeFacts& f) {
+  io(f.valid, f.defects, f.solids, f.shells, f.closed_shells, f.free_edges, f.multiple_edges,
+     f.closed, f.max_tolerance, f.max_edge_gap, f.max_vertex_gap, f.area, f.volume, f.volume_bound,
+     f.diagonal, f.names, f.coloured);
+}
+template <typename Io>
+void transfer(Io& io, SolidModel& f) {
+  io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.notices);
+}
+template <typename Io>
+void transfer(Io& io, WriteReport& f) {
+  io(f.written, f.refusal, f.before, f.rebuilt, f.reread, f.faces_identical,
+     f.faces_bspline_untouched, f.analytic_ulps, f.edited_exact, f.notices);
+}
+
+namespace internal {
+
+template <>
+struct Bytes<Patch> {
+  static void write(ByteWriter& out, const Patch& p) {
+    out(p.u_knots, p.v_knots, p.name, p.handle, p.points, p.weights, p.reversed, p.aliases, p.trim);
+  }
+  static Patch read(ByteReader& in) {
+    auto u_knots = Bytes<KnotVector>::read(in);
+    auto v_knots = Bytes<KnotVector>::read(in);
+    Patch p{{}, {}, std::move(u_knots), std::move(v_knots), {}, {}, false, {}, {}};
+    in(p.name, p.handle, p.points, p.weights, p.reversed, p.aliases, p.trim);
+    return p;
+  }
+};
+
+}  // namespace internal
+}  // namespace isochor

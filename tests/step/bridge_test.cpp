@@ -1,0 +1,228 @@
+#include "isochor/step/bridge.h"
+
+#include <dirent.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <thread>
+
+#include "isochor/base/error.h"
+
+namespace isochor {
+namespace {
+
+using ::testing::HasSubstr;
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;
+#else
+constexpr bool kSanitized = false;
+#endif
+
+BridgeLimits seconds(double s) {
+  BridgeLimits limits;
+  limits.seconds = s;
+  return limits;
+}
+
+int open_descriptors() {
+  DIR* folder = opendir("/proc/self/fd");
+  int count = 0;
+  while (readdir(folder) != nullptr) ++count;
+  closedir(folder);
+  return count;
+}
+
+bool has_children() { return waitpid(-1, nullptr, WNOHANG) == 0 || errno != ECHILD; }
+
+template <typename Function>
+InputError input_error_of(Function&& function) {
+  try {
+    function();
+  } catch (const InputError& e) {
+    return e;
+  }
+  ADD_FAILURE() << "no InputError";
+  return InputError("", "", "");
+}
+
+void burn() {
+  for (volatile unsigned k = 0;; k = k + 1) {
+  }
+}
+
+std::string eat_memory() {
+  std::vector<std::unique_ptr<char[]>> eaten;
+  for (;;) eaten.emplace_back(new char[size_t{64} << 20]);  // untouched: quick
+}
+
+TEST(Bridge, ResultsComeBack) {
+  EXPECT_EQ(run_in_child("f", [] { return std::string("ok\0ok", 5); }), std::string("ok\0ok", 5));
+  EXPECT_EQ(run_in_child("f", [] { return std::string(); }), "");
+  const std::string big(20 << 20, 'b');
+  EXPECT_TRUE(run_in_child("f", [&] { return big; }) == big);
+  const std::function<std::vector<double>()> work = [] { return std::vector<double>{0.1, 0.2}; };
+  EXPECT_EQ(call_in_child("f", work), (std::vector<double>{0.1, 0.2}));
+}
+
+TEST(Bridge, ChangesOfTheChildStayThere) {
+  int value = 1;
+  run_in_child("f", [&] {
+    value = 2;
+    return std::string();
+  });
+  EXPECT_EQ(value, 1);
+}
+
+TEST(Bridge, InputErrorsArriveUnchanged) {
+  const auto work = []() -> std::string { throw InputError("a.step", "face:3", "is odd"); };
+  const auto e = input_error_of([&] { run_in_child("b.step", work); });
+  EXPECT_EQ(e.file(), "a.step");
+  EXPECT_EQ(e.entity(), "face:3");
+  EXPECT_EQ(e.reason(), "is odd");
+  const auto nameless = []() -> std::string { throw InputError("", "x", "y"); };
+  EXPECT_EQ(input_error_of([&] { run_in_child("b.step", nameless); }).file(), "b.step");
+}
+
+TEST(Bridge, OtherExceptionsAreReasons) {
+  const auto standard = []() -> std::string { throw std::out_of_range("index 7"); };
+  EXPECT_EQ(input_error_of([&] { run_in_child("b", standard); }).reason(), "index 7");
+  const auto odd = []() -> std::string { throw 42; };
+  EXPECT_THAT(input_error_of([&] { run_in_child("b", odd); }).reason(), HasSubstr("unknown type"));
+}
+
+TEST(Bridge, CrashesAreReported) {
+  for (int signal : {SIGSEGV, SIGABRT, SIGFPE, SIGKILL}) {
+    const auto result = run_child([signal]() -> std::string {
+      std::raise(signal);
+      return "alive";
+    });
+    EXPECT_NE(result.end, ChildEnd::kFinished) << signal;
+    EXPECT_FALSE(result.reason.empty()) << signal;
+  }
+  const auto segv = run_child([]() -> std::string {
+    std::raise(SIGSEGV);
+    return "alive";
+  });
+  EXPECT_EQ(segv.end, ChildEnd::kDied);
+  EXPECT_THAT(segv.reason, HasSubstr("crashed"));
+  const auto exits = run_child([]() -> std::string { _exit(3); });
+  EXPECT_EQ(exits.end, ChildEnd::kDied);
+  EXPECT_FALSE(has_children());
+}
+
+TEST(Bridge, EndlessLoopsAreStopped) {
+  const auto result = run_child(
+      []() -> std::string {
+        burn();
+        return "";
+      },
+      seconds(1));
+  EXPECT_EQ(result.end, ChildEnd::kTimedOut);
+  EXPECT_THAT(result.reason, HasSubstr("took longer than the 1 s allowed"));
+}
+
+TEST(Bridge, MemoryIsLimited) {
+  if (kSanitized) GTEST_SKIP() << "sanitizers reserve terabytes of address space";
+  BridgeLimits limits;
+  limits.megabytes = 2000;
+  const auto result = run_child(eat_memory, limits);
+  EXPECT_EQ(result.end, ChildEnd::kOutOfMemory);
+  EXPECT_THAT(result.reason, HasSubstr("2000 MB"));
+}
+
+TEST(Bridge, CancellingStopsTheChild) {
+  const CancelToken cancel;
+  std::thread later([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    cancel.cancel();
+  });
+  const auto start = std::chrono::steady_clock::now();
+  const auto result = run_child(
+      []() -> std::string {
+        burn();
+        return "";
+      },
+      {}, cancel);
+  later.join();
+  EXPECT_EQ(result.end, ChildEnd::kCancelled);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+  EXPECT_FALSE(has_children());
+}
+
+TEST(Bridge, TheChildIsSilent) {
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  run_in_child("f", [] {
+    std::cout << "noise" << std::endl;
+    std::fprintf(stderr, "noise");
+    std::fflush(nullptr);
+    return std::string();
+  });
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+}
+
+TEST(Bridge, NothingIsLeftBehind) {
+  const int before = open_descriptors();
+  for (int k = 0; k < 20; ++k) {
+    run_child([] { return std::string("x"); });
+    run_child([]() -> std::string { _exit(1); });
+  }
+  EXPECT_EQ(open_descriptors(), before);
+  EXPECT_FALSE(has_children());
+}
+
+TEST(Bridge, ManyThreadsMayStartChildren) {
+  std::atomic<int> good{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&good, t] {
+      for (int k = 0; k < 5; ++k) {
+        const std::string text(static_cast<size_t>(100000 + t), static_cast<char>('a' + k));
+        if (run_in_child("f", [&] { return text; }) == text) ++good;
+      }
+    });
+  }
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(good, 20);
+}
+
+TEST(Bridge, InterruptedWaitsGoOn) {
+  struct sigaction action {};
+  struct sigaction old {};
+  action.sa_handler = [](int) {};
+  sigaction(SIGUSR1, &action, &old);
+  const pthread_t self = pthread_self();
+  std::atomic<bool> stop{false};
+  std::thread pest([&] {
+    while (!stop) {
+      pthread_kill(self, SIGUSR1);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  const auto result = run_child([] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return std::string(1 << 20, 'x');
+  });
+  stop = true;
+  pest.join();
+  sigaction(SIGUSR1, &old, nullptr);
+  EXPECT_EQ(result.end, ChildEnd::kFinished);
+  EXPECT_EQ(result.bytes.size(), size_t{1} << 20);
+}
+
+TEST(Bridge, LimitsMustBePositive) {
+  EXPECT_THROW(run_child([] { return std::string(); }, seconds(0)), PreconditionError);
+}
+
+}  // namespace
+}  // namespace isochor
