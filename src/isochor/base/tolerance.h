@@ -11,6 +11,15 @@ namespace isochor {
 // Unit roundoff of double: |fl(a op b) - (a op b)| <= kUnitRoundoff |a op b|.
 inline constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
+// Knots that were computed (shifted by a period, mapped to a neighbour's domain) are the same knot
+// when |s - t| <= kSameKnot * scale, scale the largest knot or the domain's length. Dimensionless:
+// such a map rounds three times; real spans are far longer.
+inline constexpr double kSameKnot = 1e-13;
+
+// Two lengths count as equal when they differ by less than this share; only used to choose (which
+// span to divide), never to judge. Dimensionless.
+inline constexpr double kSameLength = 1e-9;
+
 // Two boundary poles are "the same point" when |p - q| <= kCoincident * diagonal. Dimensionless.
 // CAD writers round to 1e-7 of a millimetre on metre-sized models; 1e-6 of the diagonal separates
 // that noise from real gaps in the 902 files that were measured.
