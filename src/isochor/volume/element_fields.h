@@ -1,0 +1,65 @@
+// The coordinate functions of one patch, and their gradients, element by element.
+//
+// On rational patches every function is quotient A / W with A = sum w_ij B_i B_j c_ij; the weights
+// are constant, so each function is linear in its coefficients: f = sum R_ij c_ij.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "isochor/base/vec3.h"
+#include "isochor/volume/element_kernel.h"
+
+namespace isochor::internal {
+
+// What the integrals need of a patch.
+struct PatchForm {
+  std::shared_ptr<const SpanTable> u, v;
+  std::vector<int> points;      // #u x #v, indices into the table of points
+  std::vector<double> weights;  // the same, or empty
+  double sign = 1.0;
+
+  int v_size() const { return v->knots().size(); }
+  bool rational() const { return !weights.empty(); }
+};
+
+using VectorGrid = std::array<Grid, 3>;  // one grid for each coordinate
+
+// A workspace for the elements of one patch: `place` it on an element, then evaluate or scatter.
+class ElementFields {
+ public:
+  // `sizes`: majorants instead of functions, see ElementKernel.
+  explicit ElementFields(const PatchForm& patch, bool sizes = false);
+
+  void place(int su, int sv);
+
+  size_t grid_size() const { return kernel_.grid_size(); }
+  // Quadrature weight at each Gauss point, without the patch's sign.
+  const std::vector<double>& weights() const { return quadrature_; }
+  // Index into the table of points of the block's entry k (k = i (dv + 1) + j).
+  int point(size_t k) const { return patch_->points[grid_index_[k]]; }
+  size_t block_size() const { return grid_index_.size(); }
+
+  // Coordinate `axis` of the function with coefficients vectors[point] - origin.
+  void evaluate(const std::vector<Vec3>& vectors, int axis, double origin, Grid& out);
+  // For each block entry k: sum over Gauss points of a.value R_k + a.du dR_k/du + a.dv dR_k/dv.
+  // `a` is overwritten.
+  const std::vector<double>& project(Grid& a);
+
+ private:
+  double weight(size_t k) const {
+    return patch_->rational() ? patch_->weights[grid_index_[k]] : 1.0;
+  }
+  void divide(Grid& grid) const;
+
+  const PatchForm* patch_;
+  ElementKernel kernel_;
+  bool sizes_;
+  int su_ = 0, sv_ = 0;
+  std::vector<size_t> grid_index_;
+  std::vector<double> quadrature_, block_;
+  Grid denominator_;
+};
+
+}  // namespace isochor::internal

@@ -1,0 +1,53 @@
+// Sum-factorised evaluation and integration on one element (a rectangle of two knot spans).
+//
+// Symbols: blocks hold (du + 1)(dv + 1) coefficients, u-major; grids hold nu x nv numbers, one per
+// pair of Gauss points, u-major.
+#pragma once
+
+#include <vector>
+
+#include "isochor/volume/span_table.h"
+
+namespace isochor::internal {
+
+// A scalar function and its partial derivatives at the Gauss points of an element.
+struct Grid {
+  std::vector<double> value, du, dv;
+  void resize(size_t count) {
+    value.resize(count);
+    du.resize(count);
+    dv.resize(count);
+  }
+};
+
+class ElementKernel {
+ public:
+  // `sizes`: use slope sizes in place of slopes; with non-negative blocks every result is then an
+  // upper bound of what the plain kernel sums up (the majorant that rounding bounds need).
+  ElementKernel(const SpanTable& u, const SpanTable& v, bool sizes = false);
+
+  size_t block_size() const { return static_cast<size_t>(u_->degree() + 1) * (v_->degree() + 1); }
+  size_t grid_size() const { return static_cast<size_t>(u_->gauss_points()) * v_->gauss_points(); }
+
+  // The function sum_ij block_ij B_i B_j on element (su, sv). Cost O(n (d+1)(d+1+n)).
+  void evaluate(int su, int sv, const std::vector<double>& block, Grid& out);
+
+  // block_ij += sum over Gauss points of (a.value B_i B_j + a.du B_i' B_j + a.dv B_i B_j'):
+  // the transpose of `evaluate`.
+  void accumulate(int su, int sv, const Grid& a, std::vector<double>& block);
+
+  // The product of the quadrature weights at each Gauss point.
+  void weights(int su, int sv, std::vector<double>& out) const;
+
+ private:
+  const double* slopes(const SpanTable& t, int s, int j) const {
+    return sizes_ ? t.slope_sizes(s, j) : t.slopes(s, j);
+  }
+
+  const SpanTable* u_;
+  const SpanTable* v_;
+  bool sizes_;
+  std::vector<double> rows_, row_slopes_;  // (du + 1) x nv, contracted along v
+};
+
+}  // namespace isochor::internal

@@ -1,0 +1,105 @@
+// The signed volume enclosed by a model, its gradient and its changes.
+//
+// Symbols: patch q has the grid of points p = (x, y, z) and sign s_q (-1 when reversed).
+//   V(p) = sum_q s_q iint z (x_u y_v - x_v y_u) du dv                     (Sauvage et al., eq. 5,
+//   6)
+// Points are passed apart from the model, one row per point of the model's table; gradients come
+// back the same way: row i is (dV/dx_i, dV/dy_i, dV/dz_i), summed over all patches that use point
+// i. An *element* is a rectangle of two non-empty knot spans of one patch.
+//
+// V is computed by Gauss quadrature per element: ceil(3d/2) points per direction integrate
+// polynomial patches exactly (up to rounding); patches with weights use a fixed, finer rule. All
+// functions below belong to that one discrete functional, a cubic in the points, so an edit that
+// keeps it keeps it to rounding whatever the quadrature error is.
+//
+// Laws (each is a test of that name in tests/volume/volume_form_test.cpp):
+//  (1) translation:  V(p + t) == V(p)                     (closed models only)
+//  (2) linear map:   V(p A^T) == det(A) V(p)              (closed models only)
+//  (3) orientation:  reversing every patch negates V
+//  (4) linearity:    V is affine in each coordinate column, the others fixed
+//  (5) locality:     V(q) - V(p) == value(q, s) - value(p, s) when p and q differ only at the
+//  points
+//                    of the support s
+//  (6) gradient:     V(p + t d) - V(p) == t <gradient(p), d> + O(t^2), on open models too
+// Not a law: V >= 0. The sign follows the orientation.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "isochor/base/vec3.h"
+#include "isochor/bspline/patch_model.h"
+
+namespace isochor {
+
+// One element: the s-th non-empty spans in u and v of a patch.
+struct Element {
+  int patch = 0;
+  int u_span = 0;
+  int v_span = 0;
+  friend bool operator==(const Element& a, const Element& b) {
+    return a.patch == b.patch && a.u_span == b.u_span && a.v_span == b.v_span;
+  }
+};
+
+// Where a set of points acts. Made by VolumeForm::support_of.
+struct Support {
+  std::vector<int> points;        // ascending, without repeats
+  std::vector<int> row_of;        // per point of the table: its place in `points`, or -1
+  std::vector<Element> elements;  // those on which a function of these points lives; in order
+};
+
+struct ValueAndGradient {
+  double value = 0.0;
+  std::vector<Vec3> gradient;
+};
+
+// V(p + s d) - V(p) = linear s + quadratic s^2 + cubic s^3.
+struct LineCubic {
+  double linear = 0.0;
+  double quadratic = 0.0;
+  double cubic = 0.0;
+  double change(double s) const { return ((cubic * s + quadratic) * s + linear) * s; }
+  double slope(double s) const { return (3.0 * cubic * s + 2.0 * quadratic) * s + linear; }
+};
+
+// An immutable functional; copies share their tables. Everything is const and thread-safe.
+class VolumeForm {
+ public:
+  // Uses knots, weights and orientation of the model's patches; its points only as an example of
+  // where the model lies.
+  explicit VolumeForm(const PatchModel& model);
+
+  // The number of rows that point tables must have.
+  int point_count() const;
+
+  // Cost of all of these: O(d^3) per element with equal degrees d (sum factorisation).
+  double value(const std::vector<Vec3>& points) const;
+  ValueAndGradient value_and_gradient(const std::vector<Vec3>& points) const;
+  std::vector<Vec3> gradient(const std::vector<Vec3>& points) const;
+
+  // The elements under these points (repeats allowed), in a fixed order.
+  Support support_of(const std::vector<int>& moved_points) const;
+  // All points and elements.
+  Support whole() const;
+
+  // The part of V that depends on the points of the support; only differences have a meaning.
+  double value(const std::vector<Vec3>& points, const Support& support) const;
+  // One row per support.points: those rows of the full gradient.
+  std::vector<Vec3> gradient(const std::vector<Vec3>& points, const Support& support) const;
+
+  // V along the line p + s d; `directions` is a full table that is zero outside support.points.
+  // Integrated on the expanded difference: no cancellation between large volumes, so the error of
+  // each coefficient is relative to its own terms, however small d is.
+  LineCubic line_cubic(const std::vector<Vec3>& points, const std::vector<Vec3>& directions,
+                       const Support& support) const;
+  // V(after) - V(before) by line_cubic; the tables agree outside support.points.
+  double change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
+                const Support& support) const;
+
+ private:
+  struct Data;
+  std::shared_ptr<const Data> data_;
+};
+
+}  // namespace isochor
