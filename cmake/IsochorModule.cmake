@@ -7,17 +7,29 @@ target_compile_options(isochor_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
   -ffp-contract=off  # fused multiply-add only where the code asks for it
   $<$<BOOL:${ISOCHOR_WERROR}>:-Werror>)
-install(TARGETS isochor_options EXPORT isochor-targets)
 
 # isochor_add_module(<layer> [SOURCES ...] HEADERS ... [DEPENDS layer ...] [LINK public ...] [PRIVATE_LINK ...])
-# declares the library isochor::<layer> from the files of src/isochor/<layer>.
+# declares the library isochor::<layer> from the files of src/isochor/<layer>. Header-only libraries
+# under PRIVATE_LINK stay out of the installed package: its users never see them.
 function(isochor_add_module layer)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS;DEPENDS;LINK;PRIVATE_LINK")
   set(target isochor_${layer})
+  set(private_link "")
+  foreach(library IN LISTS arg_PRIVATE_LINK)
+    set(type "")
+    if(TARGET ${library})
+      get_target_property(type ${library} TYPE)
+    endif()
+    if(type STREQUAL "INTERFACE_LIBRARY")
+      list(APPEND private_link $<BUILD_INTERFACE:${library}>)
+    else()
+      list(APPEND private_link ${library})
+    endif()
+  endforeach()
   if(arg_SOURCES)
     set(scope PUBLIC)
     add_library(${target} ${arg_SOURCES})
-    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:isochor_options> ${arg_PRIVATE_LINK})
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:isochor_options> ${private_link})
   else()
     set(scope INTERFACE)
     add_library(${target} INTERFACE)
@@ -38,16 +50,27 @@ function(isochor_add_module layer)
     FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
-# isochor_add_tests(<layer> SOURCES ... [LINK ...]) declares the test program of one layer.
+# isochor_add_tests(<layer> SOURCES ... [SLOW_SOURCES ...] [LINK ...]) declares the test program of one
+# layer. The tests of SLOW_SOURCES, a program of their own, carry the label `slow` besides the layer's:
+# the sanitizer run leaves them out.
 function(isochor_add_tests layer)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LINK")
-  set(target isochor_${layer}_tests)
-  add_executable(${target} ${arg_SOURCES})
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;SLOW_SOURCES;LINK")
+  if(arg_SOURCES)
+    isochor_add_test_program(isochor_${layer}_tests ${layer} "${arg_SOURCES}" "${arg_LINK}" "${layer}")
+  endif()
+  if(arg_SLOW_SOURCES)
+    isochor_add_test_program(isochor_${layer}_slow_tests ${layer} "${arg_SLOW_SOURCES}" "${arg_LINK}"
+                             "${layer}\\;slow")
+  endif()
+endfunction()
+
+function(isochor_add_test_program target layer sources link labels)
+  add_executable(${target} ${sources})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
-  target_link_libraries(${target} PRIVATE isochor_options ${arg_LINK} GTest::gmock GTest::gtest_main)
+  target_link_libraries(${target} PRIVATE isochor_options ${link} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${target} PRIVATE
     ISOCHOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     ISOCHOR_BINARY_DIR="${CMAKE_BINARY_DIR}")
   gtest_discover_tests(${target} TEST_PREFIX "${layer}." DISCOVERY_TIMEOUT 120
-    PROPERTIES TIMEOUT 600 LABELS "${layer}")
+    PROPERTIES TIMEOUT 600 LABELS "${labels}")
 endfunction()
