@@ -1,0 +1,54 @@
+#include "isochor/base/progress.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <thread>
+
+namespace isochor {
+namespace {
+
+TEST(Progress, ATokenStartsDown) { EXPECT_FALSE(CancelToken().cancelled()); }
+
+TEST(Progress, CopiesShareTheFlag) {
+  const CancelToken token;
+  const CancelToken before = token;
+  token.cancel();
+  const CancelToken after = token;
+  EXPECT_TRUE(before.cancelled());
+  EXPECT_TRUE(after.cancelled());
+}
+
+TEST(Progress, TokensMadeApartAreIndependent) {
+  const CancelToken one;
+  const CancelToken other;
+  one.cancel();
+  EXPECT_FALSE(other.cancelled());
+}
+
+TEST(Progress, AnotherThreadMayCancel) {
+  const CancelToken token;
+  std::thread thread([token] { token.cancel(); });
+  thread.join();
+  EXPECT_TRUE(token.cancelled());
+}
+
+TEST(Progress, CancellingTwiceIsLikeOnce) {
+  const CancelToken token;
+  token.cancel();
+  token.cancel();
+  EXPECT_TRUE(token.cancelled());
+}
+
+TEST(Progress, ACallbackMayBeEmpty) {
+  EXPECT_FALSE(ProgressCallback());
+  std::string seen;
+  const ProgressCallback callback = [&](double fraction, std::string_view step) {
+    seen = std::string(step) + ' ' + std::to_string(fraction);
+  };
+  callback(0.5, "factorise");
+  EXPECT_EQ(seen, "factorise 0.500000");
+}
+
+}  // namespace
+}  // namespace isochor
