@@ -19,6 +19,19 @@ void work_in(const LengthUnit& unit, const Handle(TDocStd_Document) & xde);
 void read_step(Document& document);
 void read_iges(Document& document);
 
+// Gives a document that has only a shape (BREP) the structure that STEP and IGES writers need.
+void require_xde(Document& document);
+
+struct WriteSettings {
+  // Parameter curves of STEP edges. Some solids survive a round trip only without them.
+  bool parameter_curves = true;
+};
+
+// Writes to `path` itself, with all digits and in the document's unit; the format goes by the
+// extension. Throws InputError when the writer fails or the disk is full.
+void write_document(Document& document, const std::string& path,
+                    const WriteSettings& settings = {});
+
 // Notices about entities that could not be understood or were repaired on the way.
 void note_checks(Document& document);
 
