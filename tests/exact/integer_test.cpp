@@ -1,0 +1,80 @@
+#include "isochor/exact/integer.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+#include "isochor/base/error.h"
+
+namespace isochor {
+namespace {
+
+Integer power_of(long base, int exponent) {
+  Integer result(1);
+  for (int k = 0; k < exponent; ++k) result *= base;
+  return result;
+}
+
+TEST(Integer, FactorialBeyondMachineWords) {
+  Integer factorial(1);
+  for (long k = 2; k <= 30; ++k) factorial *= k;
+  EXPECT_EQ(factorial.to_string(), "265252859812191058636308480000000");
+  EXPECT_EQ(factorial.bits(), 108u);
+}
+
+TEST(Integer, RingLaws) {
+  std::mt19937_64 random(11);
+  const auto number = [&] {
+    const auto digit = [&] { return Integer(static_cast<long>(random())); };
+    return digit() * digit() - digit();
+  };
+  for (int round = 0; round < 50; ++round) {
+    const Integer a = number();
+    const Integer b = number();
+    const Integer c = number();
+    EXPECT_EQ(a * (b + c), a * b + a * c);
+    EXPECT_EQ((a * b) * c, a * (b * c));
+    EXPECT_EQ(a - b, -(b - a));
+    Integer sum = a;
+    sum.add_product(b, c);
+    EXPECT_EQ(sum, a + b * c);
+    sum.add_product(b, -7);
+    EXPECT_EQ(sum, a + b * c - Integer(7) * b);
+    EXPECT_EQ((a * b).divided_exactly(b), a);
+  }
+}
+
+TEST(Integer, ValuesDoNotShareState) {
+  Integer a = power_of(3, 100);
+  const Integer copy = a;
+  Integer moved = std::move(a);
+  moved += 1;
+  EXPECT_EQ(copy + 1, moved);
+  a = copy;
+  EXPECT_EQ(a, copy);
+  a = *&a;
+  EXPECT_EQ(a, copy);
+}
+
+TEST(Integer, OrderSignAndShift) {
+  EXPECT_LT(Integer(-3), Integer(2));
+  EXPECT_LT(-power_of(2, 200), Integer(std::numeric_limits<long>::min()));
+  EXPECT_EQ(Integer(-5).sign(), -1);
+  EXPECT_EQ(Integer().sign(), 0);
+  EXPECT_EQ(Integer(3).shifted(200), Integer(3) * power_of(2, 200));
+  EXPECT_EQ(Integer(std::numeric_limits<long>::min()).to_string(), "-9223372036854775808");
+}
+
+TEST(Integer, LeastCommonMultiple) {
+  EXPECT_EQ(lcm(12, -18), Integer(36));
+  EXPECT_EQ(lcm(power_of(6, 40), power_of(4, 60)), power_of(2, 120) * power_of(3, 40));
+  EXPECT_EQ(lcm(0, 5), Integer(0));
+}
+
+TEST(Integer, DivisionByZeroIsTheCallersBug) {
+  EXPECT_THROW(Integer(4).divided_exactly(0), PreconditionError);
+}
+
+}  // namespace
+}  // namespace isochor
