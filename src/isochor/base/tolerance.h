@@ -16,6 +16,16 @@ inline constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() /
 // such a map rounds three times; real spans are far longer.
 inline constexpr double kSameKnot = 1e-13;
 
+// Two sides carry the same basis when knots (mapped to [0, 1]) and weights (as ratios) differ by at
+// most this. Dimensionless. Poles tied one to one then open a gap of at most d * 1e-10 times the
+// displacement, far below kCoincident; writers that print ten digits still pass.
+inline constexpr double kSameSide = 1e-10;
+
+// A point of a surface has no usable normal when |S_u x S_v| <= kSingular |S_u| |S_v|, or when a
+// whole domain travelled at the speed |S_u| (or |S_v|) covers less than kSingular * diagonal.
+// Dimensionless: half the digits of a double are left for the normal's direction.
+inline constexpr double kSingular = 1e-8;
+
 // Two lengths count as equal when they differ by less than this share; only used to choose (which
 // span to divide), never to judge. Dimensionless.
 inline constexpr double kSameLength = 1e-9;
