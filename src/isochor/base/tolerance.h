@@ -57,4 +57,13 @@ inline constexpr double kVolumeKept = 1e-13;
 // pivots that still carry six digits.
 inline constexpr double kDependentPivot = 1e-20;
 
+// A trimming curve runs along a side of its surface when it stays nearer than
+// kSideDistance * diagonal to the side, or within the tolerance of its edge. Dimensionless.
+inline constexpr double kSideDistance = 1e-9;
+
+// ... but never when it leaves the side by more than this part of the domain, however large its
+// tolerance is, and always when by less than that (rounding of parameters in files). Dimensionless.
+inline constexpr double kSideSlack = 1e-3;
+inline constexpr double kSideNoise = 1e-10;
+
 }  // namespace isochor
