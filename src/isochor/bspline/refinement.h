@@ -94,7 +94,8 @@ KnotVector wrapped_with_knots(const KnotVector& knots, std::vector<double> inser
 BandedMap wrapped_insertion_map(const KnotVector& coarse, const KnotVector& fine);
 
 // Knots with at least `spans` spans of comparable length: whichever spans are longest are divided
-// evenly, ties together, until there are enough. Old knots stay. Wrapped vectors stay wrapped.
+// evenly, ties together, until there are enough. Old knots stay. Knots outside the domain stay too:
+// for a wrapped vector hand inserted_knots(knots, result) to wrapped_with_knots.
 KnotVector refined_to_spans(const KnotVector& knots, int spans);
 // Knots whose spans are at most `length` long, each old span divided evenly. `length` must be
 // positive and must not ask for more than 100000 spans (InputError).
