@@ -45,16 +45,6 @@ void read_brep(Document& document) {
   }
 }
 
-std::string label_name(const TDF_Label& label) {
-  Handle(TDataStd_Name) name;
-  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return "";
-  const TCollection_ExtendedString& wide = name->Get();
-  std::string text(static_cast<size_t>(wide.LengthOfCString()), '\0');
-  Standard_PCharacter at = text.data();
-  wide.ToUTF8CString(at);
-  return text;
-}
-
 void collect_names(Document& document, const TDF_Label& label) {
   TopoDS_Shape shape;
   if (XCAFDoc_ShapeTool::GetShape(label, shape) && !shape.IsNull() &&
@@ -115,6 +105,16 @@ TopoDS_Face Document::face(int k) const {
 std::string Document::name_of(const TopoDS_Shape& of) const {
   const auto found = names.find(of.TShape().get());
   return found == names.end() ? "" : found->second;
+}
+
+std::string label_name(const TDF_Label& label) {
+  Handle(TDataStd_Name) name;
+  if (!label.FindAttribute(TDataStd_Name::GetID(), name)) return "";
+  const TCollection_ExtendedString& wide = name->Get();
+  std::string text(static_cast<size_t>(wide.LengthOfCString()), '\0');
+  Standard_PCharacter at = text.data();
+  wide.ToUTF8CString(at);
+  return text;
 }
 
 void index_document(Document& document) {

@@ -46,6 +46,9 @@ struct Document {
 // Reads a file. Throws InputError when it is missing, empty, cannot be parsed, or has no shape.
 Document load_document(const std::string& path);
 
+// The name of a label as UTF-8, or empty.
+std::string label_name(const TDF_Label& label);
+
 // Fills `shape`, `faces` and `names` from `xde` (or from `shape` when there is none).
 void index_document(Document& document);
 

@@ -1,0 +1,141 @@
+#include "isochor/step/checks.h"
+
+#include <BRep_Tool.hxx>
+#include <TopExp.hxx>
+#include <TopTools_IndexedMapOfShape.hxx>
+#include <TopoDS.hxx>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace isochor::internal {
+namespace {
+
+// Rounding allowed when two lengths of one model are compared; relative to its diagonal.
+constexpr double kLengthRounding = 1e-12;
+
+// Area and volume after a round trip; relative. B-spline faces come back bit for bit, analytic ones
+// move by a unit in the last place, and trimming curves are integrated to about 1e-9.
+constexpr double kSameMeasure = 1e-8;
+
+// Tolerances are stored with the digits of a double but read through a sum.
+constexpr double kSameTolerance = 1e-9;
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+std::string first_defect(const ShapeFacts& facts) {
+  return facts.defects.empty() ? "" : " (" + facts.defects.front() + ")";
+}
+
+std::string changed(const std::string& what, double from, double to) {
+  return what + " changed from " + number(from) + " to " + number(to);
+}
+
+std::string changed(const std::string& what, int from, int to) {
+  return what + " changed from " + std::to_string(from) + " to " + std::to_string(to);
+}
+
+std::string grew(const std::string& what, double from, double to, double allowed) {
+  if (to <= from + allowed) return "";
+  return what + " grew from " + number(from) + " to " + number(to);
+}
+
+std::string different_topology(const ShapeFacts& a, const ShapeFacts& b) {
+  if (a.solids != b.solids) return changed("the number of solids", a.solids, b.solids);
+  if (a.shells != b.shells) return changed("the number of shells", a.shells, b.shells);
+  if (a.free_edges != b.free_edges) {
+    return changed("the number of free edges", a.free_edges, b.free_edges);
+  }
+  if (a.closed != b.closed) return b.closed ? "an open shape was closed" : "it is no longer closed";
+  return "";
+}
+
+// Measures that may be unknown (0 with an infinite bound) are not compared.
+std::string different_measure(const std::string& what, double a, double b, double bound,
+                              double scale) {
+  if (!std::isfinite(a) || !std::isfinite(b)) return "";
+  const double allowed = kSameMeasure * std::max({std::abs(a), std::abs(b), scale}) + bound;
+  return std::abs(a - b) <= allowed ? "" : changed(what, a, b);
+}
+
+// A name that is missing afterwards; readers may add names of their own.
+std::string lost_name(std::vector<std::string> before, std::vector<std::string> after) {
+  std::sort(before.begin(), before.end());
+  std::sort(after.begin(), after.end());
+  std::vector<std::string> lost;
+  std::set_difference(before.begin(), before.end(), after.begin(), after.end(),
+                      std::back_inserter(lost));
+  return lost.empty() ? "" : lost.front();
+}
+
+}  // namespace
+
+std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt) {
+  if (!before.valid) return "the input is not a valid solid" + first_defect(before);
+  if (!rebuilt.valid) return "the edited shape is not valid" + first_defect(rebuilt);
+  std::string text = different_topology(before, rebuilt);
+  const double rounding = kLengthRounding * before.diagonal;
+  if (text.empty()) {
+    text = grew("the largest tolerance", before.max_tolerance, rebuilt.max_tolerance, 0.0);
+  }
+  if (text.empty()) {
+    text = grew("the largest gap between an edge and its faces", before.max_edge_gap,
+                rebuilt.max_edge_gap, rounding);
+  }
+  if (text.empty()) {
+    text = grew("the largest gap at a vertex", before.max_vertex_gap, rebuilt.max_vertex_gap,
+                rounding);
+  }
+  return text;
+}
+
+std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& rebuilt) {
+  TopTools_IndexedMapOfShape old_edges, new_edges;
+  TopExp::MapShapes(before, TopAbs_EDGE, old_edges);
+  TopExp::MapShapes(rebuilt, TopAbs_EDGE, new_edges);
+  if (old_edges.Extent() != new_edges.Extent()) {
+    return changed("the number of edges", old_edges.Extent(), new_edges.Extent());
+  }
+  const Gaps old_gaps = measure_gaps(before), new_gaps = measure_gaps(rebuilt);
+  for (size_t k = 0; k < new_gaps.edges.size(); ++k) {
+    const double own = BRep_Tool::Tolerance(TopoDS::Edge(old_edges(static_cast<int>(k) + 1)));
+    const std::string text = grew("the gap along edge " + std::to_string(k + 1),
+                                  std::max(old_gaps.edges[k], own), new_gaps.edges[k], 0.0);
+    if (!text.empty()) return text;
+  }
+  return "";
+}
+
+std::string objection_to_reread(const ShapeFacts& written, const ShapeFacts& reread, bool labels) {
+  if (written.valid && !reread.valid) {
+    return "the file reads back as an invalid shape" + first_defect(reread);
+  }
+  std::string text = different_topology(written, reread);
+  if (text.empty()) {
+    text = grew("the largest tolerance", written.max_tolerance, reread.max_tolerance,
+                kSameTolerance * written.max_tolerance);
+  }
+  const double scale = written.diagonal;
+  if (text.empty()) {
+    text = different_measure("the area", written.area, reread.area, 0.0, 0.0);
+  }
+  if (text.empty()) {
+    text = different_measure("the volume", written.volume, reread.volume,
+                             written.volume_bound + reread.volume_bound,
+                             kLengthRounding * scale * scale * scale);
+  }
+  if (text.empty() && labels) {
+    const std::string lost = lost_name(written.names, reread.names);
+    if (!lost.empty()) text = "the name '" + lost + "' was lost";
+    if (text.empty() && reread.coloured < written.coloured) {
+      text = changed("the number of coloured parts", written.coloured, reread.coloured);
+    }
+  }
+  return text.empty() ? "" : "after reading the file back, " + text;
+}
+
+}  // namespace isochor::internal

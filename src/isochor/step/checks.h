@@ -1,0 +1,24 @@
+// What may be said of an edited shape before it is written, and of a file after it is read back.
+// Internal to `step`. All texts are reasons in words; empty means nothing to object.
+#pragma once
+
+#include <string>
+
+#include "isochor/step/document.h"
+#include "isochor/step/gaps.h"
+#include "isochor/step/solid_model.h"
+
+namespace isochor::internal {
+
+// Compares a rebuilt shape with its input. Reading a STEP file again repairs an invalid solid by
+// larger tolerances, so this must happen before anything is written.
+std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt);
+
+// The same edge by edge: a new gap must not hide behind a larger old one elsewhere. An edge may use
+// its own tolerance, which has not changed.
+std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& rebuilt);
+
+// Compares what was read back with what was written.
+std::string objection_to_reread(const ShapeFacts& written, const ShapeFacts& reread, bool labels);
+
+}  // namespace isochor::internal

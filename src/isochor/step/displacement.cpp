@@ -1,0 +1,197 @@
+#include "isochor/step/displacement.h"
+
+#include <BRep_Tool.hxx>
+#include <Geom2d_BSplineCurve.hxx>
+#include <Geom2d_Curve.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <Geom_TrimmedCurve.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <algorithm>
+#include <cmath>
+
+#include "isochor/base/error.h"
+#include "isochor/bspline/refinement.h"
+#include "isochor/step/occt_surface.h"
+
+namespace isochor::internal {
+namespace {
+
+// Two ways to the same pole (the file's entity, OpenCASCADE's surface made clamped) differ by a few
+// roundings of the coordinates; real displacements are larger. Relative to the largest coordinate.
+constexpr double kNoise = 1e-13;
+
+// Parameter curves of whole sides are written with about 1e-12 of the range. Relative to the range.
+constexpr double kSameParameter = 1e-9;
+
+// Samples along a parameter curve: no B-spline of the degrees allowed vanishes at all of them.
+constexpr int kSamples = 64;
+constexpr int kSamplesPerSpan = 8;
+
+struct ParameterCurve {
+  Handle(Geom2d_Curve) curve;
+  double first = 0.0, last = 0.0;
+  ParameterCurve(const TopoDS_Edge& edge, const TopoDS_Face& face) {
+    curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
+  }
+  Uv at(double fraction) const {
+    const gp_Pnt2d p = curve->Value(first + fraction * (last - first));
+    return {p.X(), p.Y()};
+  }
+};
+
+Surface difference_of(const Surface& before, const Surface& after) {
+  const bool same = before.u_knots() == after.u_knots() && before.v_knots() == after.v_knots();
+  Surface fine = before;
+  if (!same) {
+    try {
+      fine = refine(before, after.u_knots(), after.v_knots());
+    } catch (const PreconditionError&) {
+      throw InputError("", "", "its new knots are not a refinement of the old ones");
+    }
+  }
+  if (fine.rational() != after.rational()) {
+    throw InputError("", "", "its weights were added or removed");
+  }
+  std::vector<Vec3> poles(fine.poles().size());
+  for (size_t k = 0; k < poles.size(); ++k) poles[k] = after.poles()[k] - fine.poles()[k];
+  return Surface(after.u_knots(), after.v_knots(), std::move(poles), after.weights());
+}
+
+double largest_coordinate(const Surface& surface) {
+  double largest = 0.0;
+  for (const Vec3& p : surface.poles()) largest = std::max(largest, p.cwiseAbs().maxCoeff());
+  return largest;
+}
+
+// The poles of the iso curve of `surface` on `run`; OpenCASCADE's iso at a clamped end is the pole
+// row itself.
+Handle(Geom_BSplineCurve) iso_curve(const Surface& surface, const IsoRun& run) {
+  const auto occt = to_occt(surface);
+  const Handle(Geom_Curve) iso = run.along_v ? occt->UIso(run.constant) : occt->VIso(run.constant);
+  auto curve = Handle(Geom_BSplineCurve)::DownCast(iso);
+  if (run.slope == 1.0 && run.offset == 0.0) return curve;
+  TColStd_Array1OfReal knots = curve->Knots();
+  if (run.slope < 0.0) {
+    curve->Reverse();  // knot x becomes first + last - x
+    const double sum = knots.First() + knots.Last();
+    knots = curve->Knots();
+    for (int k = knots.Lower(); k <= knots.Upper(); ++k) {
+      knots(k) = (sum - knots(k) - run.offset) / run.slope;
+    }
+  } else {
+    for (int k = knots.Lower(); k <= knots.Upper(); ++k) {
+      knots(k) = (knots(k) - run.offset) / run.slope;
+    }
+  }
+  curve->SetKnots(knots);
+  return curve;
+}
+
+bool same_basis(const Geom_BSplineCurve& a, const Geom_BSplineCurve& b) {
+  if (a.IsPeriodic() || b.IsPeriodic() || a.Degree() != b.Degree() || a.NbPoles() != b.NbPoles() ||
+      a.NbKnots() != b.NbKnots()) {
+    return false;
+  }
+  const double range = std::abs(a.LastParameter() - a.FirstParameter());
+  for (int k = 1; k <= a.NbKnots(); ++k) {
+    if (a.Multiplicity(k) != b.Multiplicity(k)) return false;
+    if (std::abs(a.Knot(k) - b.Knot(k)) > kNoise * range) return false;
+  }
+  for (int k = 1; k <= a.NbPoles(); ++k) {
+    if (a.Weight(k) != b.Weight(k)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+Displacement::Displacement(const TopoDS_Face& face, const Surface& before, const Surface& after)
+    : face_(face), after_(after), difference_(difference_of(before, after)) {
+  BRep_Tool::Surface(face, location_);
+  noise_ = kNoise * std::max(largest_coordinate(before), largest_coordinate(after));
+}
+
+double Displacement::snapped(double value, const KnotVector& knots) const {
+  const double near = kSameParameter * (knots.end() - knots.begin());
+  if (std::abs(value - knots.begin()) <= near) return knots.begin();
+  if (std::abs(value - knots.end()) <= near) return knots.end();
+  return value;
+}
+
+double Displacement::along(const TopoDS_Edge& edge) const {
+  const ParameterCurve curve(edge, face_);
+  if (curve.curve.IsNull()) return 0.0;
+  int samples = kSamples;
+  samples =
+      std::max({samples, kSamplesPerSpan * after_.u_size(), kSamplesPerSpan * after_.v_size()});
+  double largest = 0.0;
+  for (int k = 0; k <= samples; ++k) {
+    const Uv uv = curve.at(static_cast<double>(k) / samples);
+    const Vec3 d =
+        difference_.point(snapped(uv.u, after_.u_knots()), snapped(uv.v, after_.v_knots()));
+    if (!is_noise(d)) largest = std::max(largest, d.norm());
+  }
+  return largest;
+}
+
+Vec3 Displacement::at_end(const TopoDS_Edge& edge, int end) const {
+  const ParameterCurve curve(edge, face_);
+  if (curve.curve.IsNull()) return Vec3::Zero();
+  const Uv uv = curve.at(end);
+  const Vec3 d =
+      difference_.point(snapped(uv.u, after_.u_knots()), snapped(uv.v, after_.v_knots()));
+  return is_noise(d) ? Vec3(Vec3::Zero()) : d;
+}
+
+std::optional<IsoRun> Displacement::iso_run(const TopoDS_Edge& edge) const {
+  const ParameterCurve curve(edge, face_);
+  if (curve.curve.IsNull() || curve.last == curve.first) return std::nullopt;
+  const Uv start = curve.at(0.0), finish = curve.at(1.0);
+  const auto &u = after_.u_knots(), &v = after_.v_knots();
+  const double near_u = kSameParameter * (u.end() - u.begin());
+  const double near_v = kSameParameter * (v.end() - v.begin());
+  IsoRun run;
+  run.along_v = std::abs(start.u - finish.u) <= near_u;
+  const double a = run.along_v ? start.v : start.u, b = run.along_v ? finish.v : finish.u;
+  run.constant = run.along_v ? snapped(start.u, u) : snapped(start.v, v);
+  run.slope = (b - a) / (curve.last - curve.first);
+  // Lines of unit speed are the rule; their slope must not carry a rounding.
+  if (std::abs(std::abs(run.slope) - 1.0) <= kSameParameter) run.slope = run.slope > 0 ? 1.0 : -1.0;
+  run.offset = a - run.slope * curve.first;
+  if (std::abs(run.offset) <= kNoise * (std::abs(a) + std::abs(curve.first))) run.offset = 0.0;
+  if (run.slope == 0.0) return std::nullopt;
+  for (int k = 0; k <= kSamples; ++k) {
+    const double fraction = static_cast<double>(k) / kSamples;
+    const Uv uv = curve.at(fraction);
+    const double t = curve.first + fraction * (curve.last - curve.first);
+    const double off = run.along_v ? std::abs(uv.u - start.u) : std::abs(uv.v - start.v);
+    const double uneven = std::abs((run.along_v ? uv.v : uv.u) - (run.slope * t + run.offset));
+    if (off > (run.along_v ? near_u : near_v) || uneven > (run.along_v ? near_v : near_u)) {
+      return std::nullopt;
+    }
+  }
+  return run;
+}
+
+Handle(Geom_Curve) Displacement::new_curve(const TopoDS_Edge& edge, const IsoRun& run) const {
+  const auto shift = iso_curve(difference_, run);
+  TopLoc_Location location;
+  double first = 0.0, last = 0.0;
+  Handle(Geom_Curve) old = BRep_Tool::Curve(edge, location, first, last);
+  const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(old);
+  if (!trimmed.IsNull()) old = trimmed->BasisCurve();
+  auto curve = Handle(Geom_BSplineCurve)::DownCast(old);
+  if (curve.IsNull() || !location.IsEqual(location_) || !same_basis(*curve, *shift)) {
+    return iso_curve(after_, run);
+  }
+  curve = Handle(Geom_BSplineCurve)::DownCast(curve->Copy());
+  for (int k = 1; k <= curve->NbPoles(); ++k) {
+    const gp_Pnt d = shift->Pole(k);
+    if (is_noise(Vec3(d.X(), d.Y(), d.Z()))) continue;
+    curve->SetPole(k, curve->Pole(k).Translated(gp_Vec(d.X(), d.Y(), d.Z())));
+  }
+  return curve;
+}
+
+}  // namespace isochor::internal

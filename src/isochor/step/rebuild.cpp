@@ -1,0 +1,154 @@
+#include "isochor/step/rebuild.h"
+
+#include <BRepTools_Modifier.hxx>
+#include <BRep_Tool.hxx>
+#include <TDF_ChildIterator.hxx>
+#include <TDF_LabelSequence.hxx>
+#include <TNaming_Builder.hxx>
+#include <TopExp.hxx>
+#include <TopoDS.hxx>
+#include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
+
+#include "isochor/base/error.h"
+#include "isochor/step/occt_surface.h"
+#include "isochor/step/pole_modification.h"
+
+namespace isochor::internal {
+namespace {
+
+// A part of the document whose geometry is stored once, and the changes to it.
+struct Part {
+  TDF_Label label;  // null for documents without labels
+  TopoDS_Shape shape;
+  std::vector<FaceChange> changes;
+};
+
+std::string handle_of(int face) { return "face:" + std::to_string(face + 1); }
+
+std::vector<Part> parts_of(const Document& document) {
+  if (document.xde.IsNull()) return {{TDF_Label(), document.shape, {}}};
+  std::vector<Part> parts;
+  TDF_LabelSequence labels;
+  XCAFDoc_DocumentTool::ShapeTool(document.xde->Main())->GetShapes(labels);
+  for (TDF_LabelSequence::Iterator it(labels); it.More(); it.Next()) {
+    if (!XCAFDoc_ShapeTool::IsSimpleShape(it.Value())) continue;
+    if (XCAFDoc_ShapeTool::IsSubShape(it.Value())) continue;
+    parts.push_back({it.Value(), XCAFDoc_ShapeTool::GetShape(it.Value()), {}});
+  }
+  return parts;
+}
+
+// How often the geometry of a face occurs in the whole document.
+int places_of(const TopoDS_Face& face, const Document& document) {
+  int places = 0;
+  for (int k = 0; k < document.face_count(); ++k)
+    places += document.face(k).IsPartner(face) ? 1 : 0;
+  return places;
+}
+
+Vec3 vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
+gp_Pnt point_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+// `surface` taken from the document's coordinates to those of the face's own surface. Poles that
+// have not moved get the old pole itself, because transforming there and back would round.
+Surface localised(const Surface& surface, const TopoDS_Face& face) {
+  TopLoc_Location location;
+  BRep_Tool::Surface(face, location);
+  if (location.IsIdentity()) return surface;
+  const gp_Trsf& out = location.Transformation();
+  const gp_Trsf in = out.Inverted();
+  const auto old = plain_bspline(face);
+  const bool same_grid =
+      !old.IsNull() && old->NbUPoles() == surface.u_size() && old->NbVPoles() == surface.v_size();
+  std::vector<Vec3> poles = surface.poles();
+  for (int i = 0; i < surface.u_size(); ++i) {
+    for (int j = 0; j < surface.v_size(); ++j) {
+      Vec3& pole = poles[surface.index(i, j)];
+      const bool unmoved = same_grid && vector_of(old->Pole(i + 1, j + 1).Transformed(out)) == pole;
+      pole = vector_of(unmoved ? old->Pole(i + 1, j + 1) : point_of(pole).Transformed(in));
+    }
+  }
+  return Surface(surface.u_knots(), surface.v_knots(), std::move(poles), surface.weights());
+}
+
+// Hands each edited face to the part that stores it; a refusal when that is not one part.
+std::string distribute(const Document& document, const std::vector<EditedFace>& faces,
+                       std::vector<Part>& parts) {
+  for (const auto& edited : faces) {
+    const TopoDS_Face face = document.face(edited.face);
+    const int places = places_of(face, document);
+    if (places != 1) {
+      return handle_of(edited.face) + ": belongs to a part that is used in " +
+             std::to_string(places) + " places; an edit would change all of them";
+    }
+    bool found = false;
+    for (auto& part : parts) {
+      TopTools_IndexedMapOfShape own;
+      TopExp::MapShapes(part.shape, TopAbs_FACE, own);
+      for (int k = 1; k <= own.Extent() && !found; ++k) {
+        if (!own(k).IsPartner(face)) continue;
+        found = true;
+        part.changes.push_back(
+            {TopoDS::Face(own(k)), handle_of(edited.face), localised(edited.surface, face)});
+      }
+    }
+    if (!found) return handle_of(edited.face) + ": belongs to no part of the file";
+  }
+  return "";
+}
+
+// Labels of sub-shapes carry names and colours: each must point to what its shape became.
+void repoint(const TDF_Label& label, BRepTools_Modifier& modifier,
+             const TopTools_IndexedMapOfShape& known) {
+  for (TDF_ChildIterator it(label); it.More(); it.Next()) {
+    TopoDS_Shape old;
+    if (XCAFDoc_ShapeTool::GetShape(it.Value(), old) && known.Contains(old)) {
+      TopoDS_Shape changed = modifier.ModifiedShape(old);
+      changed.Orientation(old.Orientation());
+      TNaming_Builder(it.Value()).Generated(changed);
+    }
+    repoint(it.Value(), modifier, known);
+  }
+}
+
+std::string rebuild_one(Document& document, const Part& part) {
+  const RebuildPlan plan = plan_rebuild(part.shape, part.changes);
+  if (!plan.refusal.empty()) return plan.refusal;
+  BRepTools_Modifier modifier(part.shape, new PoleModification(plan));
+  if (!modifier.IsDone()) return "the shape could not be rebuilt";
+  const TopoDS_Shape changed = modifier.ModifiedShape(part.shape);
+  if (part.label.IsNull()) {
+    document.shape = changed;
+    return "";
+  }
+  TopTools_IndexedMapOfShape known;
+  TopExp::MapShapes(part.shape, known);
+  repoint(part.label, modifier, known);
+  XCAFDoc_DocumentTool::ShapeTool(document.xde->Main())->SetShape(part.label, changed);
+  return "";
+}
+
+}  // namespace
+
+TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan) {
+  ISOCHOR_REQUIRE(plan.refusal.empty(), plan.refusal);
+  BRepTools_Modifier modifier(part, new PoleModification(plan));
+  return modifier.ModifiedShape(part);
+}
+
+std::string rebuild(Document& document, const std::vector<EditedFace>& faces) {
+  std::vector<Part> parts = parts_of(document);
+  std::string refusal = distribute(document, faces, parts);
+  for (const auto& part : parts) {
+    if (refusal.empty() && !part.changes.empty()) refusal = rebuild_one(document, part);
+  }
+  if (!refusal.empty()) return refusal;
+  if (!document.xde.IsNull()) {
+    XCAFDoc_DocumentTool::ShapeTool(document.xde->Main())->UpdateAssemblies();
+  }
+  index_document(document);
+  return "";
+}
+
+}  // namespace isochor::internal

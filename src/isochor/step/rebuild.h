@@ -1,0 +1,26 @@
+// Puts edited surfaces into a shape: faces, edges and vertices follow, everything else stays.
+// Internal to `step`.
+//
+// Laws:
+//  (1) parameter curves, tolerances, orientation and topology stay as they were;
+//  (2) faces keep their numbers, and labels their names and colours;
+//  (3) the result is not trusted: callers measure it before it is written (see write_edited).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "isochor/step/document.h"
+#include "isochor/step/rebuild_plan.h"
+#include "isochor/step/solid_model.h"
+
+namespace isochor::internal {
+
+// Changes the document. Returns why it cannot be done, in words, or nothing; then the document may
+// be half changed and must be dropped. Throws PreconditionError when a face number is out of range.
+[[nodiscard]] std::string rebuild(Document& document, const std::vector<EditedFace>& faces);
+
+// One part only, without labels: for a plan that has no refusal.
+TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan);
+
+}  // namespace isochor::internal

@@ -1,0 +1,56 @@
+// What must change in a shape when the poles of some faces have moved. Internal to `step`.
+//
+// A face's displacement D(u, v) = new surface - old surface, in one basis. Where D vanishes along
+// an edge, the edge stays as it is. Else the edge must run along an iso line of the face, and its
+// new curve is either the old one plus D (when both have the same basis, so that existing gaps
+// stay) or the iso curve of the new surface, in the edge's own parameter. Vertices move by D at
+// their parameters.
+#pragma once
+
+#include <Geom_Curve.hxx>
+#include <Geom_Surface.hxx>
+#include <TopLoc_Location.hxx>
+#include <TopTools_ShapeMapHasher.hxx>
+#include <TopoDS_Face.hxx>
+#include <TopoDS_Shape.hxx>
+#include <gp_Pnt.hxx>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "isochor/bspline/surface.h"
+
+namespace isochor::internal {
+
+// New geometry of one face of a part, in the coordinates of the face's own surface (its location
+// comes on top).
+struct FaceChange {
+  TopoDS_Face face;
+  std::string handle;  // for messages
+  Surface surface;
+};
+
+struct NewSurface {
+  TopoDS_Face face;
+  Handle(Geom_Surface) surface;
+};
+struct NewCurve {
+  TopoDS_Shape edge;
+  Handle(Geom_Curve) curve;
+  TopLoc_Location location;
+};
+struct NewPoint {
+  TopoDS_Shape vertex;
+  gp_Pnt point;
+};
+
+struct RebuildPlan {
+  std::vector<NewSurface> surfaces;
+  std::vector<NewCurve> curves;
+  std::vector<NewPoint> points;
+  std::string refusal;  // why it cannot be done, in words; else empty
+};
+
+RebuildPlan plan_rebuild(const TopoDS_Shape& part, const std::vector<FaceChange>& changes);
+
+}  // namespace isochor::internal
