@@ -45,6 +45,11 @@ inline constexpr double kAlmostSmoothAngle = 0.087;  // 5 degrees
 // Dimensionless.
 inline constexpr double kSameCurvature = 1e-3;
 
+// Two quadrature rules for a patch with weights agree when the sum of |differences| over its
+// elements stays below kQuadratureNoise times the integral of the absolute integrand.
+// Dimensionless: the rounding of either sum, which no finer rule can go below.
+inline constexpr double kQuadratureNoise = 32 * kUnitRoundoff;
+
 // A displacement constraint is met when |got - asked| <= kReached * diagonal. Dimensionless;
 // the solve attains about 1e-15, so this is a promise with three digits to spare.
 inline constexpr double kReached = 1e-12;

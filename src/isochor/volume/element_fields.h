@@ -35,6 +35,8 @@ class ElementFields {
   void place(int su, int sv);
 
   size_t grid_size() const { return kernel_.grid_size(); }
+  bool sizes() const { return sizes_; }
+  size_t row_length() const { return static_cast<size_t>(patch_->v->gauss_points()); }
   // Quadrature weight at each Gauss point, without the patch's sign.
   const std::vector<double>& weights() const { return quadrature_; }
   // Index into the table of points of the block's entry k (k = i (dv + 1) + j).

@@ -6,7 +6,8 @@
 // Laws:
 //  (1) exactness: with gauss_points(s) >= ceil(3d/2), products of two functions and one derivative
 //      are integrated exactly up to rounding;
-//  (2) accuracy: values and slope sizes carry a relative error of at most (6d + 6) unit roundoffs,
+//  (2) accuracy: values and slope sizes carry a relative error of at most (9d + 6) unit roundoffs,
+//      slopes one of that many of their sizes,
 //      however far the knots are from zero, because only knot differences are used.
 #pragma once
 

@@ -2,18 +2,24 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "isochor/base/error.h"
+#include "isochor/base/tolerance.h"
 #include "isochor/volume/compensated_sum.h"
-#include "isochor/volume/element_fields.h"
+#include "isochor/volume/element_integrals.h"
+#include "isochor/volume/quadrature_choice.h"
+#include "isochor/volume/rim.h"
 
 namespace isochor {
 
 using internal::CompensatedSum;
 using internal::ElementFields;
-using internal::Grid;
 using internal::PatchForm;
+using internal::Rim;
+using internal::RimElement;
+using internal::TableCache;
 using internal::VectorGrid;
 
 namespace {
@@ -25,87 +31,102 @@ struct Use {
   int j;
 };
 
-// Points of Gauss per span on patches with weights.
-constexpr int kRationalGaussPoints = 20;
-
-// Tables are shared by all patches with the same knots and rule.
-class TableCache {
- public:
-  std::shared_ptr<const SpanTable> get(const KnotVector& knots, int gauss_points) {
-    for (const auto& known : tables_) {
-      if (known->gauss_points() == gauss_points && known->knots() == knots) return known;
-    }
-    tables_.push_back(std::make_shared<const SpanTable>(knots, gauss_points));
-    return tables_.back();
-  }
-
- private:
-  std::vector<std::shared_ptr<const SpanTable>> tables_;
-};
-
-// x_u y_v - x_v y_u at Gauss point g.
-double jacobian(const Grid& x, const Grid& y, size_t g) {
-  return x.du[g] * y.dv[g] - x.dv[g] * y.du[g];
-}
-
-// The coordinate functions on the placed element. x and y are taken relative to the element's first
-// point: only their derivatives matter, and those lose nothing then, however far the model is.
-void evaluate_points(ElementFields& fields, const std::vector<Vec3>& points, VectorGrid& out) {
-  const Vec3& reference = points[static_cast<size_t>(fields.point(0))];
-  fields.evaluate(points, 0, reference.x(), out[0]);
-  fields.evaluate(points, 1, reference.y(), out[1]);
-  fields.evaluate(points, 2, 0.0, out[2]);
-}
-
-double element_value(const ElementFields& fields, const VectorGrid& p) {
-  double sum = 0.0;
-  for (size_t g = 0; g < fields.grid_size(); ++g) {
-    sum += fields.weights()[g] * p[2].value[g] * jacobian(p[0], p[1], g);
-  }
-  return sum;
-}
-
-// The integrands of the three gradient columns, as coefficients of a function and its derivatives.
-void gradient_integrands(const ElementFields& fields, const VectorGrid& p, VectorGrid& out) {
-  for (Grid& grid : out) grid.resize(fields.grid_size());
-  for (size_t g = 0; g < fields.grid_size(); ++g) {
-    const double w = fields.weights()[g];
-    const double wz = w * p[2].value[g];
-    out[0].value[g] = 0.0;
-    out[0].du[g] = wz * p[1].dv[g];
-    out[0].dv[g] = -wz * p[1].du[g];
-    out[1].value[g] = 0.0;
-    out[1].du[g] = -wz * p[0].dv[g];
-    out[1].dv[g] = wz * p[0].du[g];
-    out[2].value[g] = w * jacobian(p[0], p[1], g);
-    out[2].du[g] = 0.0;
-    out[2].dv[g] = 0.0;
-  }
-}
-
-// Walks over elements, keeping one workspace per patch change.
+// Walks over elements, one workspace per run of elements of a patch.
 template <typename Visit>
 void for_each_element(const std::vector<PatchForm>& patches, const std::vector<Element>& elements,
-                      const Visit& visit) {
+                      bool sizes, const Visit& visit) {
   std::unique_ptr<ElementFields> fields;
   int current = -1;
   for (const Element& element : elements) {
+    const PatchForm& patch = patches[static_cast<size_t>(element.patch)];
+    if (patch.points.empty()) continue;
     if (element.patch != current) {
       current = element.patch;
-      fields = std::make_unique<ElementFields>(patches[static_cast<size_t>(current)]);
+      fields = std::make_unique<ElementFields>(patch, sizes);
     }
     fields->place(element.u_span, element.v_span);
-    visit(patches[static_cast<size_t>(current)], *fields);
+    visit(patch, *fields);
   }
+}
+
+// A patch with the tables that make it exact; weights that are all equal are left out.
+PatchForm polynomial_form(const Patch& patch, TableCache& tables) {
+  PatchForm form;
+  form.u = tables.get(patch.u_knots, exact_gauss_points(patch.u_knots.degree()));
+  form.v = tables.get(patch.v_knots, exact_gauss_points(patch.v_knots.degree()));
+  form.points = patch.points;
+  const auto& w = patch.weights;
+  if (std::any_of(w.begin(), w.end(), [&](double each) { return each != w[0]; })) form.weights = w;
+  form.sign = patch.sign();
+  return form;
+}
+
+// Where heights are measured from: zero unless the model is far from it.
+double local_height(const std::vector<Vec3>& points) {
+  if (points.empty()) return 0.0;
+  const auto lower = [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); };
+  const auto [low, high] = std::minmax_element(points.begin(), points.end(), lower);
+  const double middle = 0.5 * (low->z() + high->z());
+  return std::abs(middle) > high->z() - low->z() ? middle : 0.0;
 }
 
 }  // namespace
 
 struct VolumeForm::Data {
   std::vector<PatchForm> patches;
+  std::vector<PatchForm> finer;        // patches with weights, with the next finer rule; else empty
   std::vector<std::vector<Use>> uses;  // per point
   std::vector<Element> elements;       // all of them
+  double height = 0.0;
+  Rim rim;  // only when height is not zero
+
+  // The integral of (z - height) dx dy over each element, in order.
+  std::vector<double> element_values(const std::vector<PatchForm>& forms,
+                                     const std::vector<Vec3>& points, const Support& support,
+                                     bool sizes) const;
+  // The same for the change along a line at s = 1; `sizes`: with the rounding factor included.
+  std::vector<double> element_changes(const std::vector<PatchForm>& forms,
+                                      const std::vector<Vec3>& points,
+                                      const std::vector<Vec3>& directions, const Support& support,
+                                      bool sizes) const;
+  void require_fits(const std::vector<Vec3>& points) const {
+    ISOCHOR_REQUIRE(points.size() == uses.size(), points.size(), uses.size());
+  }
 };
+
+namespace {
+
+double total(const std::vector<double>& terms) {
+  CompensatedSum sum;
+  for (double term : terms) sum.add(term);
+  return sum.total();
+}
+
+// Displacements of the support's points; zero elsewhere.
+std::vector<Vec3> displacements(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
+                                const Support& support) {
+  ISOCHOR_REQUIRE(before.size() == after.size(), before.size(), after.size());
+  std::vector<Vec3> moved(before.size(), Vec3::Zero());
+  for (int id : support.points) {
+    const auto i = static_cast<size_t>(id);
+    moved[i] = after[i] - before[i];
+  }
+  return moved;
+}
+
+// The distance between two rules, element by element; `fine` only has the patches with weights.
+double distance(const std::vector<Element>& elements, const std::vector<PatchForm>& finer,
+                const std::vector<double>& coarse, const std::vector<double>& fine) {
+  double sum = 0.0;
+  size_t next = 0;
+  for (size_t k = 0; k < elements.size(); ++k) {
+    if (finer[static_cast<size_t>(elements[k].patch)].points.empty()) continue;
+    sum += std::abs(coarse[k] - fine[next++]);
+  }
+  return sum;
+}
+
+}  // namespace
 
 VolumeForm::VolumeForm(const PatchModel& model) {
   auto data = std::make_shared<Data>();
@@ -113,17 +134,6 @@ VolumeForm::VolumeForm(const PatchModel& model) {
   TableCache tables;
   for (size_t q = 0; q < model.patches.size(); ++q) {
     const Patch& patch = model.patches[q];
-    const auto rule = [&](const KnotVector& knots) {
-      const int exact = exact_gauss_points(knots.degree());
-      return tables.get(knots,
-                        patch.weights.empty() ? exact : std::max(exact, kRationalGaussPoints));
-    };
-    PatchForm form;
-    form.u = rule(patch.u_knots);
-    form.v = rule(patch.v_knots);
-    form.points = patch.points;
-    form.weights = patch.weights;
-    form.sign = patch.sign();
     for (int i = 0; i < patch.u_size(); ++i) {
       for (int j = 0; j < patch.v_size(); ++j) {
         const int id = patch.point(i, j);
@@ -131,17 +141,34 @@ VolumeForm::VolumeForm(const PatchModel& model) {
         data->uses[static_cast<size_t>(id)].push_back({static_cast<int>(q), i, j});
       }
     }
+    PatchForm form = polynomial_form(patch, tables);
+    PatchForm finer;
+    if (form.rational()) {
+      choose_rules(form, tables);
+      finer = form;
+      finer.u = tables.get(patch.u_knots, internal::finer_rule(form.u->gauss_points()));
+      finer.v = tables.get(patch.v_knots, internal::finer_rule(form.v->gauss_points()));
+    }
     for (int su = 0; su < form.u->spans(); ++su) {
       for (int sv = 0; sv < form.v->spans(); ++sv) {
         data->elements.push_back({static_cast<int>(q), su, sv});
       }
     }
     data->patches.push_back(std::move(form));
+    data->finer.push_back(std::move(finer));
   }
+  data->height = local_height(model.points);
+  if (data->height != 0.0) data->rim = Rim(model, data->patches, model.points.front().x());
   data_ = std::move(data);
 }
 
 int VolumeForm::point_count() const { return static_cast<int>(data_->uses.size()); }
+
+std::pair<int, int> VolumeForm::gauss_points(int patch) const {
+  ISOCHOR_REQUIRE(0 <= patch && static_cast<size_t>(patch) < data_->patches.size(), patch);
+  const PatchForm& form = data_->patches[static_cast<size_t>(patch)];
+  return {form.u->gauss_points(), form.v->gauss_points()};
+}
 
 Support VolumeForm::whole() const {
   Support support;
@@ -193,6 +220,41 @@ Support VolumeForm::support_of(const std::vector<int>& moved_points) const {
   return support;
 }
 
+std::vector<double> VolumeForm::Data::element_values(const std::vector<PatchForm>& forms,
+                                                     const std::vector<Vec3>& points,
+                                                     const Support& support, bool sizes) const {
+  require_fits(points);
+  std::vector<double> values;
+  VectorGrid p;
+  for_each_element(forms, support.elements, sizes,
+                   [&](const PatchForm& patch, ElementFields& fields) {
+                     evaluate_points(fields, points, height, p);
+                     const double factor = sizes ? rounding_factor(patch) : patch.sign;
+                     values.push_back(factor * element_value(fields, p));
+                   });
+  return values;
+}
+
+std::vector<double> VolumeForm::Data::element_changes(const std::vector<PatchForm>& forms,
+                                                      const std::vector<Vec3>& points,
+                                                      const std::vector<Vec3>& directions,
+                                                      const Support& support, bool sizes) const {
+  require_fits(points);
+  require_fits(directions);
+  std::vector<double> values;
+  VectorGrid p;
+  VectorGrid d;
+  for_each_element(forms, support.elements, sizes,
+                   [&](const PatchForm& patch, ElementFields& fields) {
+                     evaluate_points(fields, points, height, p);
+                     evaluate_directions(fields, directions, d);
+                     const auto line = element_line(fields, p, d);
+                     const double factor = sizes ? rounding_factor(patch) : patch.sign;
+                     values.push_back(factor * (line[0] + line[1] + line[2]));
+                   });
+  return values;
+}
+
 double VolumeForm::value(const std::vector<Vec3>& points) const { return value(points, whole()); }
 
 ValueAndGradient VolumeForm::value_and_gradient(const std::vector<Vec3>& points) const {
@@ -204,26 +266,20 @@ std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points) const {
 }
 
 double VolumeForm::value(const std::vector<Vec3>& points, const Support& support) const {
-  ISOCHOR_REQUIRE(points.size() == data_->uses.size(), points.size(), data_->uses.size());
-  CompensatedSum sum;
-  VectorGrid p;
-  for_each_element(data_->patches, support.elements,
-                   [&](const PatchForm& patch, ElementFields& fields) {
-                     evaluate_points(fields, points, p);
-                     sum.add(patch.sign * element_value(fields, p));
-                   });
-  return sum.total();
+  const double local = total(data_->element_values(data_->patches, points, support, false));
+  if (data_->height == 0.0) return local;
+  return local + data_->height * data_->rim.area(points, data_->rim.elements_of(support.row_of));
 }
 
 std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points,
                                        const Support& support) const {
-  ISOCHOR_REQUIRE(points.size() == data_->uses.size(), points.size(), data_->uses.size());
+  data_->require_fits(points);
   std::vector<Vec3> rows(support.points.size(), Vec3::Zero());
   VectorGrid p;
   VectorGrid integrands;
   for_each_element(
-      data_->patches, support.elements, [&](const PatchForm& patch, ElementFields& fields) {
-        evaluate_points(fields, points, p);
+      data_->patches, support.elements, false, [&](const PatchForm& patch, ElementFields& fields) {
+        evaluate_points(fields, points, data_->height, p);
         gradient_integrands(fields, p, integrands);
         for (int axis = 0; axis < 3; ++axis) {
           const std::vector<double>& block = fields.project(integrands[static_cast<size_t>(axis)]);
@@ -233,49 +289,76 @@ std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points,
           }
         }
       });
+  if (data_->height != 0.0) {
+    data_->rim.add_area_gradient(points, data_->rim.elements_of(support.row_of), support.row_of,
+                                 data_->height, rows);
+  }
   return rows;
 }
 
 LineCubic VolumeForm::line_cubic(const std::vector<Vec3>& points,
                                  const std::vector<Vec3>& directions,
                                  const Support& support) const {
-  ISOCHOR_REQUIRE(points.size() == data_->uses.size(), points.size(), data_->uses.size());
-  ISOCHOR_REQUIRE(directions.size() == points.size(), directions.size(), points.size());
+  data_->require_fits(points);
+  data_->require_fits(directions);
   std::array<CompensatedSum, 3> sums;
   VectorGrid p;
   VectorGrid d;
-  for_each_element(data_->patches, support.elements,
+  for_each_element(data_->patches, support.elements, false,
                    [&](const PatchForm& patch, ElementFields& fields) {
-                     evaluate_points(fields, points, p);
-                     for (int axis = 0; axis < 3; ++axis) {
-                       fields.evaluate(directions, axis, 0.0, d[static_cast<size_t>(axis)]);
-                     }
-                     std::array<double, 3> element{};
-                     for (size_t g = 0; g < fields.grid_size(); ++g) {
-                       const double w = fields.weights()[g];
-                       const double z = p[2].value[g];
-                       const double dz = d[2].value[g];
-                       const double j0 = jacobian(p[0], p[1], g);
-                       const double j1 = jacobian(d[0], p[1], g) + jacobian(p[0], d[1], g);
-                       const double j2 = jacobian(d[0], d[1], g);
-                       element[0] += w * (dz * j0 + z * j1);
-                       element[1] += w * (dz * j1 + z * j2);
-                       element[2] += w * (dz * j2);
-                     }
-                     for (size_t k = 0; k < 3; ++k) sums[k].add(patch.sign * element[k]);
+                     evaluate_points(fields, points, data_->height, p);
+                     evaluate_directions(fields, directions, d);
+                     const auto line = element_line(fields, p, d);
+                     for (size_t k = 0; k < 3; ++k) sums[k].add(patch.sign * line[k]);
                    });
+  if (data_->height != 0.0) {
+    const auto rim = data_->rim.elements_of(support.row_of);
+    const auto line = data_->rim.area_line(points, directions, rim);
+    for (size_t k = 0; k < 2; ++k) sums[k].add(data_->height * line[k]);
+  }
   return {sums[0].total(), sums[1].total(), sums[2].total()};
 }
 
 double VolumeForm::change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                           const Support& support) const {
-  ISOCHOR_REQUIRE(before.size() == after.size(), before.size(), after.size());
-  std::vector<Vec3> moved(before.size(), Vec3::Zero());
-  for (int id : support.points) {
-    const auto i = static_cast<size_t>(id);
-    moved[i] = after[i] - before[i];
+  return line_cubic(before, displacements(before, after, support), support).change(1.0);
+}
+
+Bounded VolumeForm::bounded_value(const std::vector<Vec3>& points) const {
+  const Support all = whole();
+  const auto values = data_->element_values(data_->patches, points, all, false);
+  const auto fine = data_->element_values(data_->finer, points, all, false);
+  double bound = total(data_->element_values(data_->patches, points, all, true)) +
+                 distance(all.elements, data_->finer, values, fine);
+  double sum = total(values);
+  if (data_->height != 0.0) {
+    const Rim& rim = data_->rim;
+    const double area = rim.area(points, rim.elements());
+    sum += data_->height * area;
+    bound +=
+        std::abs(data_->height) * rim.rounding_factor() * rim.area(points, rim.elements(), true);
   }
-  return line_cubic(before, moved, support).change(1.0);
+  // The last sums and products: three roundings of the result.
+  return {sum, bound + 3.0 * kUnitRoundoff * std::abs(sum)};
+}
+
+Bounded VolumeForm::bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
+                                   const Support& support) const {
+  const auto moved = displacements(before, after, support);
+  const auto values = data_->element_changes(data_->patches, before, moved, support, false);
+  const auto fine = data_->element_changes(data_->finer, before, moved, support, false);
+  double bound = total(data_->element_changes(data_->patches, before, moved, support, true)) +
+                 distance(support.elements, data_->finer, values, fine);
+  double sum = total(values);
+  if (data_->height != 0.0) {
+    const Rim& rim = data_->rim;
+    const auto elements = rim.elements_of(support.row_of);
+    const auto line = rim.area_line(before, moved, elements);
+    const auto sizes = rim.area_line(before, moved, elements, true);
+    sum += data_->height * (line[0] + line[1]);
+    bound += std::abs(data_->height) * rim.rounding_factor() * (sizes[0] + sizes[1]);
+  }
+  return {sum, bound + 3.0 * kUnitRoundoff * std::abs(sum)};
 }
 
 }  // namespace isochor

@@ -7,10 +7,15 @@
 // back the same way: row i is (dV/dx_i, dV/dy_i, dV/dz_i), summed over all patches that use point
 // i. An *element* is a rectangle of two non-empty knot spans of one patch.
 //
-// V is computed by Gauss quadrature per element: ceil(3d/2) points per direction integrate
-// polynomial patches exactly (up to rounding); patches with weights use a fixed, finer rule. All
-// functions below belong to that one discrete functional, a cubic in the points, so an edit that
-// keeps it keeps it to rounding whatever the quadrature error is.
+// V is computed by Gauss quadrature per element. ceil(3d/2) points per direction integrate
+// polynomial patches (also those whose weights are all equal) exactly up to rounding. Other patches
+// get, once, in the constructor, as many points as it takes until finer rules agree, at most 40.
+// All functions below belong to that one discrete functional, a cubic in the points, so an edit
+// that keeps it keeps it to rounding whatever the quadrature error is.
+//
+// Far from the origin (|middle height| > height of the model) z is measured from the middle height
+// h, and h times the projected area is added as an integral over the rim (see rim.h): nothing is
+// lost on closed models, and open models keep the meaning of V.
 //
 // Laws (each is a test of that name in tests/volume/volume_form_test.cpp):
 //  (1) translation:  V(p + t) == V(p)                     (closed models only)
@@ -21,10 +26,13 @@
 //  points
 //                    of the support s
 //  (6) gradient:     V(p + t d) - V(p) == t <gradient(p), d> + O(t^2), on open models too
-// Not a law: V >= 0. The sign follows the orientation.
+//  (7) knots:        inserting knots does not change V
+//  (8) bound:        |value - exact volume| <= bound, proven for polynomial patches
+// Not a law: V >= 0. The sign follows the orientation. Not a law on open models: (1) and (2).
 #pragma once
 
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "isochor/base/vec3.h"
@@ -49,6 +57,12 @@ struct Support {
   std::vector<Element> elements;  // those on which a function of these points lives; in order
 };
 
+// A number and how far it may be from what it stands for.
+struct Bounded {
+  double value = 0.0;
+  double bound = 0.0;
+};
+
 struct ValueAndGradient {
   double value = 0.0;
   std::vector<Vec3> gradient;
@@ -66,8 +80,8 @@ struct LineCubic {
 // An immutable functional; copies share their tables. Everything is const and thread-safe.
 class VolumeForm {
  public:
-  // Uses knots, weights and orientation of the model's patches; its points only as an example of
-  // where the model lies.
+  // Uses knots, weights and orientation of the model's patches; its points only to see where
+  // the model lies (for h).
   explicit VolumeForm(const PatchModel& model);
 
   // The number of rows that point tables must have.
@@ -96,6 +110,18 @@ class VolumeForm {
   // V(after) - V(before) by line_cubic; the tables agree outside support.points.
   double change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                 const Support& support) const;
+
+  // The same with bounds. Polynomial patches: a proven bound on the distance to the exact volume
+  // (change) of these very points. Patches with weights: a rounding bound (not proven in all its
+  // constants) plus the distance to the next finer rule, an estimate of the quadrature error that
+  // is reliable because convergence is geometric. Cost: twice that of the value; with weights, four
+  // times.
+  Bounded bounded_value(const std::vector<Vec3>& points) const;
+  Bounded bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
+                         const Support& support) const;
+
+  // Gauss points per span of a patch, (u, v).
+  std::pair<int, int> gauss_points(int patch) const;
 
  private:
   struct Data;
