@@ -1,0 +1,243 @@
+#include "isochor/bspline/continuity.h"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "isochor/bspline/joins.h"
+#include "isochor/bspline/smoothness.h"
+#include "isochor/bspline/trims.h"
+
+namespace isochor {
+namespace {
+
+const Patch& patch_of(const PatchModel& model, const SideRef& ref) {
+  return model.patches[static_cast<size_t>(ref.patch)];
+}
+
+// "smoothly (G1)", for sentences about two surfaces.
+std::string smoothly(Smoothness smoothness) {
+  return smoothness == Smoothness::kAlmost ? "almost smoothly"
+                                           : std::string("smoothly (") + name_of(smoothness) + ")";
+}
+
+// Collects locks, each point and reason once.
+class LockCollector {
+ public:
+  explicit LockCollector(PatchModel* model) : model_(model) {
+    model_->locks.clear();
+    model_->lock_reasons.clear();
+  }
+
+  int reason(const std::string& text, bool continuity) {
+    auto& reasons = model_->lock_reasons;
+    for (size_t i = 0; i < reasons.size(); ++i) {
+      if (reasons[i].text == text && reasons[i].continuity == continuity)
+        return static_cast<int>(i);
+    }
+    reasons.push_back({text, continuity});
+    return static_cast<int>(reasons.size()) - 1;
+  }
+
+  void lock(int point, int reason) {
+    if (seen_.insert({point, reason}).second) model_->locks.push_back({point, reason});
+  }
+
+  // Rows `from` .. `to` - 1 of a side, counted inwards.
+  void lock_rows(const SideRef& ref, int from, int to, const std::string& text, bool continuity) {
+    const Patch& patch = patch_of(*model_, ref);
+    to = std::min(to, knots_of(patch, across_direction(ref.side)).size());
+    if (from >= to) return;
+    const int id = reason(text, continuity);
+    for (int row = from; row < to; ++row) {
+      for (const auto& [i, j] : side_indices(patch, ref.side, row)) lock(patch.point(i, j), id);
+    }
+  }
+
+  // All poles of the functions `indices` of one direction.
+  void lock_functions(int q, Direction direction, const std::vector<int>& indices,
+                      const std::string& text) {
+    if (indices.empty()) return;
+    const Patch& patch = model_->patches[static_cast<size_t>(q)];
+    const int id = reason(text, true);
+    for (int k : indices) {
+      if (direction == Direction::kU) {
+        for (int j = 0; j < patch.v_size(); ++j) lock(patch.point(k, j), id);
+      } else {
+        for (int i = 0; i < patch.u_size(); ++i) lock(patch.point(i, k), id);
+      }
+    }
+  }
+
+ private:
+  PatchModel* model_;
+  std::set<std::pair<int, int>> seen_;
+};
+
+void lock_trim(const PatchModel& model, int q, LockCollector* locks) {
+  const Patch& patch = model.patches[static_cast<size_t>(q)];
+  if (patch.trim.empty()) return;
+  const std::vector<TrimState> states = trim_states(patch, classify_elements(patch));
+  for (size_t k = 0; k < states.size(); ++k) {
+    if (states[k] == TrimState::kFree) continue;
+    const bool off = states[k] == TrimState::kTrimmedOff;
+    locks->lock(patch.points[k],
+                locks->reason(
+                    label_of(patch) + (off ? " is trimmed: this pole shapes only what was cut away"
+                                           : " is trimmed: this pole would move a trimming edge"),
+                    false));
+  }
+}
+
+int rows_for(const PatchModel& model, const SideRef& ref, int order) {
+  return boundary_rows(knots_of(patch_of(model, ref), across_direction(ref.side)),
+                       is_begin_side(ref.side), order);
+}
+
+void lock_side(const PatchModel& model, const LockedSide& locked, LockCollector* locks) {
+  const std::string name = label_of(patch_of(model, locked.side));
+  const int row = rows_for(model, locked.side, 0);
+  locks->lock_rows(locked.side, 0, row, name + " " + locked.reason, false);
+  const int order = order_of(locked.smoothness);
+  if (order == 0) return;
+  locks->lock_rows(locked.side, row, rows_for(model, locked.side, order),
+                   name + " " + locked.reason + "; they meet " + smoothly(locked.smoothness) +
+                       ", so the pole rows next to that edge stay too",
+                   true);
+}
+
+bool is_wrap(const PatchModel& model, const Join& join, const PointClasses& classes) {
+  return join.a.patch == join.b.patch && !join.opposed &&
+         is_u_side(join.a.side) == is_u_side(join.b.side) && !(join.a == join.b) &&
+         wrapped_rows(patch_of(model, join.a), across_direction(join.a.side), classes) > 0;
+}
+
+void lock_wrap(const PatchModel& model, const Join& join, LockCollector* locks) {
+  const Patch& patch = patch_of(model, join.a);
+  const Direction direction = across_direction(join.a.side);
+  const KnotVector& knots = knots_of(patch, direction);
+  const int order = protected_order(join.smoothness, knots.degree());
+  const std::string text = label_of(patch) + " closes on itself " + smoothly(join.smoothness) +
+                           " at its seam, where its knots would allow a crease";
+  for (double end : {knots.begin(), knots.end()}) {
+    if (order > knots.degree() - knots.multiplicity(knots.begin())) {
+      locks->lock_functions(join.a.patch, direction, functions_rough_at(knots, end, order), text);
+    }
+  }
+}
+
+void lock_join(const PatchModel& model, const Join& join, LockCollector* locks) {
+  const std::string a = label_of(patch_of(model, join.a));
+  const std::string b = label_of(patch_of(model, join.b));
+  const bool seam = join.a.patch == join.b.patch;
+  const int order = order_of(join.smoothness);
+  for (const SideRef& ref : {join.a, join.b}) {
+    const int row = rows_for(model, ref, 0);
+    if (!join.matching) {
+      locks->lock_rows(ref, 0, row,
+                       (seam ? a + " meets itself at a seam" : a + " and " + b + " share an edge") +
+                           " whose poles do not correspond (" + join.mismatch + ")",
+                       false);
+    }
+    if (order > 0) {
+      locks->lock_rows(ref, join.matching ? 0 : row, rows_for(model, ref, order),
+                       (seam ? a + " meets itself " : a + " and " + b + " meet ") +
+                           smoothly(join.smoothness) + (seam ? " at its seam" : "") +
+                           ": the poles next to that edge stay so that no crease appears",
+                       true);
+    }
+  }
+}
+
+void lock_knot_lines(const PatchModel& model, int q, const Surface& surface, double size,
+                     LockCollector* locks) {
+  const Patch& patch = model.patches[static_cast<size_t>(q)];
+  for (Direction direction : {Direction::kU, Direction::kV}) {
+    const KnotVector& knots = knots_of(patch, direction);
+    for (const KnotLine& line : interior_smoothness(surface, direction, size)) {
+      if (line.measured <= line.guaranteed) continue;
+      const int order = protected_order(line.measured, knots.degree());
+      if (order <= knots.degree() - line.multiplicity) continue;
+      locks->lock_functions(q, direction, functions_rough_at(knots, line.knot, order),
+                            label_of(patch) + " is smooth (" + name_of(line.measured) +
+                                ") across inner knot lines of " +
+                                (direction == Direction::kU ? "u" : "v") +
+                                " that would allow a crease: poles next to them stay (refine to "
+                                "get freedom between)");
+    }
+  }
+}
+
+void lock_poles(const PatchModel& model, int q, const Surface& surface, double size,
+                const PointClasses& classes, LockCollector* locks) {
+  const Patch& patch = model.patches[static_cast<size_t>(q)];
+  for (Side side : kSides) {
+    const PoleSide pole = pole_side(surface, side, size);
+    if (!pole.collapsed) continue;
+    const std::string where =
+        std::string("side ") + name_of(side) + " of " + label_of(patch) + " is one point";
+    if (!is_collapsed(patch, side, classes)) {
+      locks->lock_rows({q, side}, 0, 1, where + ", but its poles are not tied to each other",
+                       false);
+    }
+    if (pole.smoothness != Smoothness::kSharp) {
+      locks->lock_rows({q, side}, 0, 2,
+                       where +
+                           " with a tangent plane: the poles around it stay so that no tip "
+                           "appears",
+                       true);
+    }
+  }
+}
+
+}  // namespace
+
+int order_of(Smoothness smoothness) {
+  return smoothness == Smoothness::kSharp ? 0 : smoothness == Smoothness::kCurvature ? 2 : 1;
+}
+
+int protected_order(Smoothness measured, int degree) {
+  return std::min(order_of(measured), std::max(1, degree - 1));
+}
+
+int boundary_rows(const KnotVector& across, bool begin_side, int order) {
+  // Near the end, function k vanishes to order k - 1 once it starts at the end itself; the first
+  // degree - multiplicity + 1 functions start before it and do not vanish.
+  const double end = begin_side ? across.begin() : across.end();
+  const int start_before = across.degree() - std::min(across.multiplicity(end), across.degree());
+  return std::max(start_before, order) + 1;
+}
+
+std::vector<int> functions_rough_at(const KnotVector& knots, double knot, int order) {
+  const int d = knots.degree();
+  std::vector<int> rough;
+  for (int j = 0; j < knots.size(); ++j) {
+    const auto first = knots.knots().begin() + j;
+    const auto copies = std::count(first, first + d + 2, knot);
+    if (copies > d - order) rough.push_back(j);
+  }
+  return rough;
+}
+
+void derive_locks(PatchModel& model) {
+  LockCollector locks(&model);
+  const double size = diagonal(model);
+  const PointClasses classes = point_classes(model);
+  for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
+    lock_trim(model, q, &locks);
+    const Surface surface = model.surface(q);
+    lock_knot_lines(model, q, surface, size, &locks);
+    lock_poles(model, q, surface, size, classes, &locks);
+  }
+  for (const LockedSide& side : model.locked_sides) lock_side(model, side, &locks);
+  for (const Join& join : model.joins) {
+    if (is_wrap(model, join, classes)) {
+      lock_wrap(model, join, &locks);
+    } else {
+      lock_join(model, join, &locks);
+    }
+  }
+}
+
+}  // namespace isochor
