@@ -71,4 +71,8 @@ inline constexpr double kSideDistance = 1e-9;
 inline constexpr double kSideSlack = 1e-3;
 inline constexpr double kSideNoise = 1e-10;
 
+// A patch has no usable normal of its own where |S_u x S_v| * (parameter area) <= kSingularNormal *
+// (its own diagonal)^2. Dimensionless; only for pictures: slender patches stay far above.
+inline constexpr double kSingularNormal = 1e-10;
+
 }  // namespace isochor
