@@ -37,7 +37,7 @@ class ExactVolume {
   // V(points). Throws InputError when not polynomial(). Cost O((du + 1)^2 (dv + 1)^2) products of
   // long integers per element: six bicubic patches of 15 x 15 points take a few tenths of a second.
   Rational value(const std::vector<Vec3>& points) const;
-  // One row per point of the table: dV/dx, dV/dy, dV/dz. Same cost times five.
+  // One row per point of the table: dV/dx, dV/dy, dV/dz. Same cost times ten.
   std::vector<ExactVec3> gradient(const std::vector<Vec3>& points) const;
   // V(after) - V(before). Only elements whose points differ are computed, and only those must be
   // polynomial: weights elsewhere do no harm.
