@@ -400,8 +400,6 @@ KnotVector with_divided_spans(const KnotVector& knots, const std::vector<int>& p
   return with_knots(knots, std::move(inserted));
 }
 
-constexpr int kMaxSpans = 100000;
-
 }  // namespace
 
 KnotVector refined_to_spans(const KnotVector& knots, int spans) {

@@ -93,12 +93,15 @@ int wrapped_poles(const KnotVector& knots);
 KnotVector wrapped_with_knots(const KnotVector& knots, std::vector<double> inserted);
 BandedMap wrapped_insertion_map(const KnotVector& coarse, const KnotVector& fine);
 
+// The most spans that a refinement may ask for in one direction.
+inline constexpr int kMaxSpans = 100000;
+
 // Knots with at least `spans` spans of comparable length: whichever spans are longest are divided
 // evenly, ties together, until there are enough. Old knots stay. Knots outside the domain stay too:
 // for a wrapped vector hand inserted_knots(knots, result) to wrapped_with_knots.
 KnotVector refined_to_spans(const KnotVector& knots, int spans);
 // Knots whose spans are at most `length` long, each old span divided evenly. `length` must be
-// positive and must not ask for more than 100000 spans (InputError).
+// positive and must not ask for more than kMaxSpans spans (InputError).
 KnotVector refined_to_length(const KnotVector& knots, double length);
 
 // The same surface on finer knots, through homogeneous coordinates when rational. Poles whose rows
