@@ -13,6 +13,7 @@
 #include <UnitsMethods.hxx>
 #include <XCAFApp_Application.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
+#include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <algorithm>
 #include <fstream>
@@ -99,6 +100,8 @@ void note(const std::map<std::string, int>& counts, const std::string& what,
 }  // namespace
 
 Handle(TDocStd_Document) new_xde() {
+  // Else every shape without a name is called "SOLID" or so, and that is not in the file.
+  XCAFDoc_ShapeTool::SetAutoNaming(Standard_False);
   Handle(TDocStd_Document) xde;
   XCAFApp_Application::GetApplication()->NewDocument("MDTV-XCAF", xde);
   return xde;

@@ -50,28 +50,6 @@ int places_of(const TopoDS_Face& face, const Document& document) {
 Vec3 vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 gp_Pnt point_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-// `surface` taken from the document's coordinates to those of the face's own surface. Poles that
-// have not moved get the old pole itself, because transforming there and back would round.
-Surface localised(const Surface& surface, const TopoDS_Face& face) {
-  TopLoc_Location location;
-  BRep_Tool::Surface(face, location);
-  if (location.IsIdentity()) return surface;
-  const gp_Trsf& out = location.Transformation();
-  const gp_Trsf in = out.Inverted();
-  const auto old = plain_bspline(face);
-  const bool same_grid =
-      !old.IsNull() && old->NbUPoles() == surface.u_size() && old->NbVPoles() == surface.v_size();
-  std::vector<Vec3> poles = surface.poles();
-  for (int i = 0; i < surface.u_size(); ++i) {
-    for (int j = 0; j < surface.v_size(); ++j) {
-      Vec3& pole = poles[surface.index(i, j)];
-      const bool unmoved = same_grid && vector_of(old->Pole(i + 1, j + 1).Transformed(out)) == pole;
-      pole = vector_of(unmoved ? old->Pole(i + 1, j + 1) : point_of(pole).Transformed(in));
-    }
-  }
-  return Surface(surface.u_knots(), surface.v_knots(), std::move(poles), surface.weights());
-}
-
 // Hands each edited face to the part that stores it; a refusal when that is not one part.
 std::string distribute(const Document& document, const std::vector<EditedFace>& faces,
                        std::vector<Part>& parts) {
@@ -90,7 +68,7 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
         if (!own(k).IsPartner(face)) continue;
         found = true;
         part.changes.push_back(
-            {TopoDS::Face(own(k)), handle_of(edited.face), localised(edited.surface, face)});
+            {TopoDS::Face(own(k)), handle_of(edited.face), local_surface(edited.surface, face)});
       }
     }
     if (!found) return handle_of(edited.face) + ": belongs to no part of the file";
@@ -131,13 +109,34 @@ std::string rebuild_one(Document& document, const Part& part) {
 
 }  // namespace
 
+Surface local_surface(const Surface& surface, const TopoDS_Face& face) {
+  TopLoc_Location location;
+  BRep_Tool::Surface(face, location);
+  if (location.IsIdentity()) return surface;
+  const gp_Trsf& out = location.Transformation();
+  const gp_Trsf in = out.Inverted();
+  const auto old = plain_bspline(face);
+  const bool same_grid =
+      !old.IsNull() && old->NbUPoles() == surface.u_size() && old->NbVPoles() == surface.v_size();
+  std::vector<Vec3> poles = surface.poles();
+  for (int i = 0; i < surface.u_size(); ++i) {
+    for (int j = 0; j < surface.v_size(); ++j) {
+      Vec3& pole = poles[surface.index(i, j)];
+      const bool unmoved = same_grid && vector_of(old->Pole(i + 1, j + 1).Transformed(out)) == pole;
+      pole = vector_of(unmoved ? old->Pole(i + 1, j + 1) : point_of(pole).Transformed(in));
+    }
+  }
+  return Surface(surface.u_knots(), surface.v_knots(), std::move(poles), surface.weights());
+}
+
 TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan) {
   ISOCHOR_REQUIRE(plan.refusal.empty(), plan.refusal);
   BRepTools_Modifier modifier(part, new PoleModification(plan));
   return modifier.ModifiedShape(part);
 }
 
-std::string rebuild(Document& document, const std::vector<EditedFace>& faces) {
+std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
+                    const std::vector<int>& /*convert*/) {
   std::vector<Part> parts = parts_of(document);
   std::string refusal = distribute(document, faces, parts);
   for (const auto& part : parts) {

@@ -18,7 +18,12 @@ namespace isochor::internal {
 
 // Changes the document. Returns why it cannot be done, in words, or nothing; then the document may
 // be half changed and must be dropped. Throws PreconditionError when a face number is out of range.
-[[nodiscard]] std::string rebuild(Document& document, const std::vector<EditedFace>& faces);
+[[nodiscard]] std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
+                                  const std::vector<int>& convert = {});
+
+// `surface`, given in the document's coordinates, in those of the face's own surface. Poles that
+// have not moved get the old pole itself, because transforming there and back would round.
+Surface local_surface(const Surface& surface, const TopoDS_Face& face);
 
 // One part only, without labels: for a plan that has no refusal.
 TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan);

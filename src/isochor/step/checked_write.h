@@ -1,0 +1,27 @@
+// Writing that proves itself: change, check, write, read back in a fresh process, compare, and only
+// then put the file in its place. Internal to `step`.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "isochor/step/document.h"
+#include "isochor/step/solid_model.h"
+
+namespace isochor::internal {
+
+struct WriteJob {
+  std::string input;                 // named in errors
+  std::function<Document()> source;  // called in child processes, more than once
+  std::vector<EditedFace> edits;     // may be empty
+  std::vector<int> convert;          // faces to turn into B-spline before they are edited
+  std::string output;
+  BridgeLimits limits;
+  bool must_be_valid = true;  // false: an invalid input may be written as it is
+};
+
+// Throws InputError when the input cannot be read or the output cannot be created.
+WriteReport write_checked(const WriteJob& job);
+
+}  // namespace isochor::internal

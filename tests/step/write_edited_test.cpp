@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "isochor/base/error.h"
+#include "isochor/step/checked_write.h"
+#include "isochor/step/exchange.h"
+#include "isochor/step/solid_model.h"
+#include "step/pulls.h"
+#include "step/shapes.h"
+#include "step/temp_folder.h"
+
+namespace isochor {
+namespace {
+
+using internal::Document;
+using internal::load_document;
+using shapes::pole_of;
+using shapes::pull;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+std::string text_of(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string write(Document document, const TempFolder& folder, const std::string& name) {
+  write_document(document, folder.file(name));
+  return folder.file(name);
+}
+
+// Pulls a pole of the file's own surfaces and writes; every promise is expected to hold.
+void expect_written(const std::string& input, const std::string& output, int i, int j,
+                    size_t faces) {
+  const Document document = load_document(input);
+  int f = 0;
+  while (internal::plain_bspline(document.face(f)).IsNull()) ++f;
+  const auto edits = pull(document, pole_of(document, f, i, j), {0.05, 0.02, -0.03});
+  ASSERT_EQ(edits.size(), faces);
+  const WriteReport report = write_edited(input, {}, edits, output);
+  ASSERT_TRUE(report.written) << report.refusal;
+  EXPECT_TRUE(report.reread.valid);
+  EXPECT_TRUE(report.reread.closed);
+  EXPECT_LE(report.reread.max_tolerance, report.before.max_tolerance);
+  EXPECT_LE(report.reread.max_edge_gap, report.before.max_edge_gap + 1e-12);
+  EXPECT_EQ(report.edited_exact, static_cast<int>(faces));
+  EXPECT_EQ(report.faces_identical, report.faces_bspline_untouched);
+  EXPECT_LE(report.analytic_ulps, 4.0);
+  EXPECT_THAT(report.reread.names, ::testing::IsSupersetOf(report.before.names));
+  EXPECT_EQ(report.reread.coloured, report.before.coloured);
+  EXPECT_NE(report.rebuilt.volume, report.before.volume);
+  EXPECT_NEAR(report.reread.volume, report.rebuilt.volume, 1e-12 * report.rebuilt.volume);
+}
+
+class WriteEdited : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(WriteEdited, InteriorEdgeAndCornerMovesSurviveAFreshReader) {
+  const TempFolder folder;
+  const auto input =
+      write(shapes::document_of(shapes::bicubic_cube(3.7), GetParam()), folder, "in.step");
+  expect_written(input, folder.file("interior.step"), 2, 3, 1);
+  expect_written(input, folder.file("edge.step"), 0, 2, 2);
+  expect_written(input, folder.file("corner.step"), 5, 5, 3);
+}
+INSTANTIATE_TEST_SUITE_P(Units, WriteEdited, ::testing::Values("mm", "m", "inch", "foot"));
+
+TEST(WriteEditedShapes, SeamsPolesAndHolesSurvive) {
+  const TempFolder folder;
+  const auto barrel = write(shapes::document_of(shapes::barrel(false)), folder, "barrel.step");
+  expect_written(barrel, folder.file("seam.step"), 0, 2, 1);
+  const auto dome = write(shapes::document_of(shapes::dome()), folder, "dome.step");
+  expect_written(dome, folder.file("nose.step"), 3, 5, 1);
+  const auto holed = write(shapes::document_of(shapes::holed_cube()), folder, "holed.step");
+  expect_written(holed, folder.file("holed_out.step"), 1, 1, 1);
+}
+
+TEST(WriteEditedShapes, OtherFormatsWork) {
+  const TempFolder folder;
+  const auto brep = write(shapes::document_of(shapes::bicubic_cube()), folder, "in.brep");
+  expect_written(brep, folder.file("out.brep"), 0, 2, 2);
+  expect_written(brep, folder.file("out.step"), 0, 2, 2);
+  const auto iges = write(shapes::document_of(shapes::bicubic_cube()), folder, "in.igs");
+  expect_written(iges, folder.file("out.igs"), 0, 2, 2);
+}
+
+TEST(WriteEditedShapes, AssembliesKeepTheirLabels) {
+  const TempFolder folder;
+  const auto input = write(shapes::assembly("inch"), folder, "pair.step");
+  expect_written(input, folder.file("pair_out.step"), 2, 2, 1);
+  const Document after = load_document(folder.file("pair_out.step"));
+  EXPECT_EQ(after.name_of(after.face(0)), "lid");
+  EXPECT_EQ(after.unit.name, "inch");
+}
+
+TEST(WriteEditedShapes, RefusalsLeaveAnOlderOutputAlone) {
+  const TempFolder folder;
+  const auto input = write(shapes::document_of(shapes::bicubic_cube()), folder, "in.step");
+  folder.write("out.step", "old");
+  const Document document = load_document(input);
+  auto edits = pull(document, pole_of(document, 0, 0, 2), {0.05, 0.02, -0.03});
+  edits.pop_back();
+  const WriteReport report = write_edited(input, {}, edits, folder.file("out.step"));
+  EXPECT_FALSE(report.written);
+  EXPECT_THAT(report.refusal, HasSubstr("not edited"));
+  EXPECT_EQ(text_of(folder.file("out.step")), "old");
+  EXPECT_EQ(folder.file_count(), 2) << "no temporary file is left";
+}
+
+TEST(WriteEditedShapes, NumbersMustBeFinite) {
+  const TempFolder folder;
+  const auto input = write(shapes::document_of(shapes::bicubic_cube()), folder, "in.step");
+  const Document document = load_document(input);
+  const auto edits = pull(document, pole_of(document, 0, 0, 0), {std::nan(""), 0, 0});
+  EXPECT_THROW(write_edited(input, {}, edits, folder.file("out.step")), PreconditionError);
+  EXPECT_EQ(folder.file_count(), 1);
+}
+
+TEST(WriteEditedShapes, UnreadableFilesAreErrors) {
+  const TempFolder folder;
+  const auto input = write(shapes::document_of(shapes::bicubic_cube()), folder, "in.step");
+  EXPECT_THROW(write_edited(folder.file("no.step"), {}, {}, folder.file("out.step")), InputError);
+  EXPECT_THROW(write_edited(input, {}, {}, folder.file("out.docx")), InputError);
+  EXPECT_THROW(write_edited(input, {}, {}, folder.file("no/such/out.step")), InputError);
+  std::filesystem::create_directory(folder.file("folder.step"));
+  EXPECT_THROW(write_edited(input, {}, {}, folder.file("folder.step")), InputError);
+}
+
+TEST(WriteEditedShapes, LimitsApply) {
+  const TempFolder folder;
+  internal::WriteJob job;
+  job.input = "in.step";
+  job.source = []() -> Document {
+    for (volatile int k = 0;; k = k + 1) {
+    }
+  };
+  job.output = folder.file("out.step");
+  job.limits.seconds = 1;
+  try {
+    internal::write_checked(job);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.file(), "in.step");
+    EXPECT_THAT(e.reason(), HasSubstr("longer"));
+  }
+  EXPECT_EQ(folder.file_count(), 0);
+}
+
+TEST(CheckedWrite, AFileThatReadsBackDifferentlyIsRefused) {
+  const TempFolder folder;
+  internal::WriteJob job;
+  job.input = "in.step";
+  job.output = folder.file("out.step");
+  // The second call, by the process that reads back, sees another shape: as if the writer had
+  // changed it.
+  const std::string mark = folder.file("mark");
+  job.source = [mark] {
+    const bool second = std::filesystem::remove(mark);
+    if (!second) std::ofstream(mark) << "x";
+    return shapes::document_of(shapes::bicubic_cube(second ? 1.01 : 1.0));
+  };
+  const WriteReport report = internal::write_checked(job);
+  EXPECT_FALSE(report.written);
+  EXPECT_THAT(report.refusal, HasSubstr("not where it was"));
+  EXPECT_FALSE(std::filesystem::exists(job.output));
+}
+
+}  // namespace
+}  // namespace isochor
