@@ -1,0 +1,29 @@
+// The bundled models. Each function returns the whole text of a file; nothing depends on time or
+// machine. Unit: metre. Axes of the fuselages: x aft, y to starboard, z up; of the hull: x forward,
+// y to port, z up.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "isochor/bspline/surface.h"
+
+namespace make_data {
+
+// One skin with a seam along the belly, a pole at the nose, a row of windows on each side and a
+// planar aft cap.
+std::string fuselage_step();
+
+// Twelve patches, four around and three along; tangents agree across every join exactly, curvatures
+// do not. The knot spans of the nose are 3/4 as long as those of the cabin and the tail.
+std::string fuselage12_step();
+
+// Port and starboard skin, a transom at x = 0 and a deck that rises towards the bow.
+std::string hull_step();
+
+// The unit cube: six bicubic patches of 15 x 15 poles at the Greville abscissae.
+std::string cube_step();
+std::string cube_json();
+
+}  // namespace make_data
