@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <utility>
 
@@ -71,33 +72,50 @@ class SideCurve {
   Limit fixed_limit_ = Limit::kFromAbove;
 };
 
-// The parameter of the point of `curve` nearest to `p`: samples, then Newton on the distance.
-double nearest_parameter(const SideCurve& curve, const Vec3& p) {
-  const KnotVector& knots = curve.knots();
-  const int per_span = 2 * knots.degree() + 2;
-  double best = knots.begin();
-  double best_distance = (curve.point(best) - p).norm();
-  for (int k : knots.spans()) {
-    for (int i = 1; i <= per_span; ++i) {
-      const double t = knots[k] + (knots[k + 1] - knots[k]) * i / per_span;
-      const double distance = (curve.point(t) - p).norm();
-      if (distance < best_distance) best_distance = distance, best = t;
+// Finds the parameter of a curve's point nearest to a given one: samples, then Newton.
+class NearestOnCurve {
+ public:
+  explicit NearestOnCurve(const SideCurve& curve) : curve_(curve) {
+    const KnotVector& knots = curve.knots();
+    const int per_span = 2 * knots.degree() + 2;
+    add(knots.begin());
+    for (int k : knots.spans()) {
+      for (int i = 1; i <= per_span; ++i) add(knots[k] + (knots[k + 1] - knots[k]) * i / per_span);
     }
   }
-  for (int step = 0; step < 20; ++step) {
-    const SurfaceDerivatives d = curve.at(best, 1, Limit::kFromAbove);
-    const Vec3 tangent = curve.tangent(d);
-    const double speed2 = tangent.squaredNorm();
-    if (!(speed2 > 0.0)) break;
-    const double next =
-        std::clamp(best + (p - d.s).dot(tangent) / speed2, knots.begin(), knots.end());
-    const double distance = (curve.point(next) - p).norm();
-    if (!(distance < best_distance)) break;
-    best = next;
-    best_distance = distance;
+
+  double parameter(const Vec3& p) const {
+    const KnotVector& knots = curve_.knots();
+    double best = at_.front();
+    double best_distance = (points_.front() - p).norm();
+    for (size_t i = 1; i < at_.size(); ++i) {
+      const double distance = (points_[i] - p).norm();
+      if (distance < best_distance) best_distance = distance, best = at_[i];
+    }
+    for (int step = 0; step < 20; ++step) {
+      const SurfaceDerivatives d = curve_.at(best, 1, Limit::kFromAbove);
+      const Vec3 tangent = curve_.tangent(d);
+      const double speed2 = tangent.squaredNorm();
+      if (!(speed2 > 0.0)) break;
+      const double next =
+          std::clamp(best + (p - d.s).dot(tangent) / speed2, knots.begin(), knots.end());
+      const double distance = (curve_.point(next) - p).norm();
+      if (!(distance < best_distance)) break;
+      best = next;
+      best_distance = distance;
+    }
+    return best;
   }
-  return best;
-}
+
+ private:
+  void add(double t) {
+    at_.push_back(t);
+    points_.push_back(curve_.point(t));
+  }
+  const SideCurve& curve_;
+  std::vector<double> at_;
+  std::vector<Vec3> points_;
+};
 
 struct SamplePair {
   double a, b;
@@ -108,6 +126,8 @@ struct SamplePair {
 std::vector<SamplePair> sample_pairs(const SideCurve& a, const SideCurve& b, bool opposed,
                                      bool matching) {
   std::vector<SamplePair> pairs;
+  std::optional<NearestOnCurve> nearest;
+  if (!matching) nearest.emplace(b);
   const KnotVector& knots = a.knots();
   for (int k : knots.spans()) {
     for (double f : kFractions) {
@@ -119,7 +139,7 @@ std::vector<SamplePair> sample_pairs(const SideCurve& a, const SideCurve& b, boo
         pairs.push_back(
             {t, b.parameter(opposed ? 1.0 - share : share), limit, opposed ? swapped : limit});
       } else {
-        pairs.push_back({t, nearest_parameter(b, a.point(t)), limit, opposed ? swapped : limit});
+        pairs.push_back({t, nearest->parameter(a.point(t)), limit, opposed ? swapped : limit});
       }
     }
   }
@@ -212,8 +232,7 @@ std::string mismatch_of(const PatchModel& model, const std::vector<Vec3>& at,
 }
 
 Join measure(const PatchModel& model, const std::vector<Vec3>& at, const PointClasses& classes,
-             const SideRef& a, const SideRef& b, bool opposed) {
-  const double size = diagonal(model);
+             double size, const SideRef& a, const SideRef& b, bool opposed) {
   const Surface surface_a = model.surface(a.patch, at);
   const Surface surface_b = model.surface(b.patch, at);
   const SideCurve curve_a(surface_a, a.side, patch_of(model, a).sign());
@@ -281,6 +300,7 @@ bool is_collapsed(const Patch& patch, Side side, const PointClasses& classes) {
 
 std::vector<Join> find_joins(const PatchModel& model) {
   const PointClasses classes = point_classes(model);
+  const double size = diagonal(model);
   struct Used {
     SideRef ref;
     bool flipped;  // the stored row is the reverse of the side's own direction
@@ -293,11 +313,11 @@ std::vector<Join> find_joins(const PatchModel& model) {
     const bool wraps_v = wrapped_rows(patch, Direction::kV, classes) > 0;
     if (wraps_u) {
       joins.push_back(
-          measure(model, model.points, classes, {q, Side::kUBegin}, {q, Side::kUEnd}, false));
+          measure(model, model.points, classes, size, {q, Side::kUBegin}, {q, Side::kUEnd}, false));
     }
     if (wraps_v) {
       joins.push_back(
-          measure(model, model.points, classes, {q, Side::kVBegin}, {q, Side::kVEnd}, false));
+          measure(model, model.points, classes, size, {q, Side::kVBegin}, {q, Side::kVEnd}, false));
     }
     for (Side side : kSides) {
       if ((is_u_side(side) ? wraps_u : wraps_v) || is_collapsed(patch, side, classes)) continue;
@@ -306,8 +326,8 @@ std::vector<Join> find_joins(const PatchModel& model) {
       const bool flipped = reverse < row;
       auto& known = sides_on[flipped ? reverse : row];
       for (const Used& other : known) {
-        joins.push_back(
-            measure(model, model.points, classes, other.ref, {q, side}, other.flipped != flipped));
+        joins.push_back(measure(model, model.points, classes, size, other.ref, {q, side},
+                                other.flipped != flipped));
       }
       known.push_back({{q, side}, flipped});
     }
@@ -316,12 +336,12 @@ std::vector<Join> find_joins(const PatchModel& model) {
 }
 
 Join measure_join(const PatchModel& model, const SideRef& a, const SideRef& b, bool opposed) {
-  return measure(model, model.points, point_classes(model), a, b, opposed);
+  return measure(model, model.points, point_classes(model), diagonal(model), a, b, opposed);
 }
 
 Join measure_join(const PatchModel& model, const std::vector<Vec3>& at, const SideRef& a,
                   const SideRef& b, bool opposed) {
-  return measure(model, at, point_classes(model), a, b, opposed);
+  return measure(model, at, point_classes(model), diagonal(model), a, b, opposed);
 }
 
 double join_gap(const PatchModel& model, const std::vector<Vec3>& at, const Join& join) {
