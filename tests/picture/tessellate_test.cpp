@@ -153,6 +153,11 @@ TEST(Tessellator, OneCutServesARefinedModel) {
   for (size_t i = 0; i < a.positions.size(); ++i) {
     EXPECT_LT((a.positions[i] - b.positions[i]).norm(), 1e-13);
   }
+  const std::vector<LineSet> c = cut.borders(), d = cut.borders(refined);
+  ASSERT_EQ(c[0].segments, d[0].segments);
+  for (size_t i = 0; i < c[0].points.size(); ++i) {
+    EXPECT_LT((c[0].points[i] - d[0].points[i]).norm(), 1e-13);
+  }
   refined.pop_back();
   EXPECT_THROW(cut.mesh(refined), PreconditionError);
 }

@@ -155,25 +155,33 @@ Tessellator::Tessellator(PatchModel model, const TessellationOptions& options,
   }
 }
 
-Mesh Tessellator::mesh(const std::vector<Vec3>& points) const {
+std::vector<Surface> Tessellator::surfaces_at(const std::vector<Vec3>& points) const {
   ISOCHOR_REQUIRE(points.size() == model_.points.size(), points.size(), model_.points.size());
   std::vector<Surface> surfaces;
   surfaces.reserve(model_.patches.size());
   for (size_t q = 0; q < model_.patches.size(); ++q) {
     surfaces.push_back(model_.surface(static_cast<int>(q), points));
   }
-  return mesh(surfaces);
+  return surfaces;
 }
 
-Mesh Tessellator::mesh(const std::vector<Surface>& surfaces) const {
+void Tessellator::require_corresponding(const std::vector<Surface>& surfaces) const {
   ISOCHOR_REQUIRE(surfaces.size() == grids_.size(), surfaces.size(), grids_.size());
-  Mesh whole;
   for (size_t q = 0; q < grids_.size(); ++q) {
     const UvBox own = domain_of(model_.patches[q]);
     const KnotVector& u = surfaces[q].u_knots();
     const KnotVector& v = surfaces[q].v_knots();
     ISOCHOR_REQUIRE(u.begin() == own.u_min && u.end() == own.u_max, q, u.begin(), u.end());
     ISOCHOR_REQUIRE(v.begin() == own.v_min && v.end() == own.v_max, q, v.begin(), v.end());
+  }
+}
+
+Mesh Tessellator::mesh(const std::vector<Vec3>& points) const { return mesh(surfaces_at(points)); }
+
+Mesh Tessellator::mesh(const std::vector<Surface>& surfaces) const {
+  require_corresponding(surfaces);
+  Mesh whole;
+  for (size_t q = 0; q < grids_.size(); ++q) {
     append(whole, evaluate_grid(grids_[q], surfaces[q], model_.patches[q].reversed),
            static_cast<int>(q));
   }
@@ -192,13 +200,18 @@ std::vector<Vec3> Tessellator::iso_curve(const Surface& surface, size_t patch, b
 }
 
 std::vector<LineSet> Tessellator::borders(const std::vector<Vec3>& points) const {
+  return borders(surfaces_at(points));
+}
+
+std::vector<LineSet> Tessellator::borders(const std::vector<Surface>& surfaces) const {
+  require_corresponding(surfaces);
   std::vector<LineSet> lines(2);
   lines[1].colour = {0.47, 0.50, 0.54};
   lines[1].width = 0.8;
   const double least = kCoincident * diagonal(model_);
   for (size_t q = 0; q < model_.patches.size(); ++q) {
     const Patch& patch = model_.patches[q];
-    const Surface surface = model_.surface(static_cast<int>(q), points);
+    const Surface& surface = surfaces[q];
     const UvBox box = domain_of(patch);
     if (!trims_[q].keeps_all()) {
       const double u_step = (box.u_max - box.u_min) / static_cast<double>(u_lines_[q].size());

@@ -48,10 +48,13 @@ class Tessellator {
   // joins, drawn lighter.
   std::vector<LineSet> borders() const { return borders(model_.points); }
   std::vector<LineSet> borders(const std::vector<Vec3>& points) const;
+  std::vector<LineSet> borders(const std::vector<Surface>& surfaces) const;
   // Knot lines, at most `max_lines` in each direction of a patch, where the trim keeps them.
   LineSet knot_lines(const std::vector<Vec3>& points, int max_lines = 12) const;
 
  private:
+  std::vector<Surface> surfaces_at(const std::vector<Vec3>& points) const;
+  void require_corresponding(const std::vector<Surface>& surfaces) const;
   std::vector<Vec3> iso_curve(const Surface& surface, size_t patch, bool along_v, double at) const;
 
   PatchModel model_;
