@@ -41,7 +41,7 @@ std::string changed(const std::string& what, int from, int to) {
 
 std::string grew(const std::string& what, double from, double to, double allowed) {
   if (to <= from + allowed) return "";
-  return what + " grew from " + number(from) + " to " + number(to);
+  return what + " grew from " + number(from) + " by " + number(to - from);
 }
 
 std::string different_topology(const ShapeFacts& a, const ShapeFacts& b) {
