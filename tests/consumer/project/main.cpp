@@ -1,4 +1,4 @@
-// Uses an installed Isochor: headers, compiled layers, a foreign library behind one of them, an error.
+// Uses an installed Isochor: headers, compiled layers, a foreign library behind one, an error.
 #include <cstdio>
 
 #include "isochor/base/error.h"
