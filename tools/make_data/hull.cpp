@@ -58,7 +58,7 @@ SectionPoint midship(double up) {
 SectionPoint bow(double up) { return {0.25 * up + 0.75 * std::pow(up, 1.9), up}; }
 
 Vec3 pole_at(double along, double up) {
-  const double sharp = smooth_step((along - 0.30) / 0.62);
+  const double sharp = smooth_step((along - 0.05) / 1.05);
   const SectionPoint m = midship(up), b = bow(up);
   const double out = (1.0 - sharp) * m.out + sharp * b.out;
   const double height = (1.0 - sharp) * m.up + sharp * b.up;
