@@ -139,6 +139,20 @@ TEST(Raster, CrossingLinesOfOneSetAreNotDarkerWhereTheyCross) {
   EXPECT_NEAR(image.pixel(10, 10)[1], image.pixel(4, 10)[1], 1);
 }
 
+TEST(Raster, DotsOnASlantedSurfaceAreWhole) {
+  Mesh slope;
+  slope.positions = {{-9, -9, -13}, {9, -9, -13}, {9, 9, 13}, {-9, 9, 13}};
+  slope.triangles = {{0, 1, 2}, {0, 2, 3}};
+  Raster raster(flat_camera());
+  raster.draw(slope, {0.5, 0.5, 0.5});
+  raster.dot(Vec3::Zero(), kRed, 4.0);
+  const Image image = raster.image();
+  for (const auto& [x, y] : {std::pair(10, 7), {10, 12}, {7, 10}, {12, 10}}) {
+    EXPECT_TRUE(reddish(image, x, y)) << x << " " << y;
+  }
+  EXPECT_FALSE(reddish(image, 10, 4));
+}
+
 TEST(Raster, BackFacesAreToldApart) {
   Raster front(flat_camera()), back(flat_camera());
   Mesh mesh = wall(0.0, 9);

@@ -203,26 +203,28 @@ void Raster::draw(const LineSet& lines) {
   for (const Vec3& p : lines.points) at_samples.push_back(sample_position(p));
   for (const auto& segment : lines.segments) {
     draw_segment(at_samples[static_cast<size_t>(segment[0])],
-                 at_samples[static_cast<size_t>(segment[1])], 0.5 * kSamples * lines.width, stamp,
-                 colour, lines.opacity);
+                 at_samples[static_cast<size_t>(segment[1])], 0.5 * kSamples * lines.width,
+                 kLineBias, stamp, colour, lines.opacity);
   }
 }
 
 void Raster::dot(const Vec3& at, const Rgb& colour, double radius) {
   std::vector<char> stamp(depth_.size(), 0);
   const Vec3 p = sample_position(at);
-  draw_segment(p, p, kSamples * radius, stamp, linear_from_srgb(colour), 1.0);
+  // A flat dot on a slanted surface sinks into it by up to twice its radius.
+  draw_segment(p, p, kSamples * radius, kLineBias + 2.0 * radius, stamp, linear_from_srgb(colour),
+               1.0);
 }
 
-void Raster::draw_segment(const Vec3& a, const Vec3& b, double half_width, std::vector<char>& stamp,
-                          const Rgb& colour, double opacity) {
+void Raster::draw_segment(const Vec3& a, const Vec3& b, double half_width, double nearer,
+                          std::vector<char>& stamp, const Rgb& colour, double opacity) {
   const double reach = half_width + 1.0;
   const auto [x_low, x_high] = std::minmax(a.x(), b.x());
   const auto [y_low, y_high] = std::minmax(a.y(), b.y());
   if (x_high < -reach || y_high < -reach || x_low > columns_ + reach || y_low > rows_ + reach) {
     return;
   }
-  const double bias = kLineBias / camera_.scale;
+  const double bias = nearer / camera_.scale;
   const double dx = b.x() - a.x(), dy = b.y() - a.y();
   const double length2 = dx * dx + dy * dy;
   const int y0 = std::max(0, static_cast<int>(std::floor(y_low - reach)));

@@ -46,8 +46,9 @@ class Raster {
   void draw(const Mesh& mesh, const Rgb& colour, const ColourScale* scale);
   void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Rgb& colour,
                      const ColourScale* scale);
-  void draw_segment(const Vec3& a, const Vec3& b, double half_width, std::vector<char>& stamp,
-                    const Rgb& colour, double opacity);
+  // `nearer`: how many pixels before its true depth it is drawn.
+  void draw_segment(const Vec3& a, const Vec3& b, double half_width, double nearer,
+                    std::vector<char>& stamp, const Rgb& colour, double opacity);
   // How far from a contour's value the scalar may be, to be within the contour line's width.
   static double contour_reach(const Vertex& a, const Vertex& b, const Vertex& c,
                               double doubled_area);
