@@ -110,6 +110,10 @@ TEST(ClosestPoint, CreasesAreReached) {
   const ClosestPoint ridge = closest_point(roof, Vec3(0.1, 1.3, 3));
   EXPECT_NEAR(ridge.uv.u, 0.4, 1e-15);
   EXPECT_NEAR(ridge.uv.v, 0.65, 1e-14);
+  // The nearest sample is on the ridge and starts the search on the far slope.
+  const ClosestPoint slope = closest_point(roof, roof.point(0.37, 0.4));
+  EXPECT_NEAR(slope.uv.u, 0.37, 1e-14);
+  EXPECT_LT(slope.distance, 1e-15);
   const ClosestPoint eaves = closest_point(roof, Vec3(4, -1, 0));
   EXPECT_EQ(eaves.uv.u, 1.0);
   EXPECT_EQ(eaves.uv.v, 0.0);

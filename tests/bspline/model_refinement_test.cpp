@@ -235,26 +235,6 @@ TEST(ModelRefinement, UnusedPointsCanBeDropped) {
   validate(compact);
 }
 
-TEST(ModelRefinement, SpansFollowTheLengthOnTheSurface) {
-  const PatchModel model = testing::make_cylinder(2.0, 6.0);
-  for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
-    const Surface surface = model.surface(q);
-    for (Direction direction : {Direction::kU, Direction::kV}) {
-      const KnotVector fine = refined_to_surface_length(surface, direction, 0.5);
-      EXPECT_EQ(inserted_knots(knots_of(surface, direction), fine).size() +
-                    knots_of(surface, direction).interior().size(),
-                fine.interior().size());
-      for (int k : fine.spans()) {
-        const auto at = [&](double t) {
-          return direction == Direction::kU ? surface.point(t, surface.v_knots().end())
-                                            : surface.point(surface.u_knots().end(), t);
-        };
-        EXPECT_LT((at(fine[k + 1]) - at(fine[k])).norm(), 0.7);
-      }
-    }
-  }
-}
-
 template <typename Error, typename Action>
 std::string message_of(Action action) {
   try {
@@ -272,13 +252,24 @@ TEST(ModelRefinement, ErrorsNameThePatch) {
   const KnotVector& v = model.patches[0].v_knots;
   EXPECT_THROW(refine(model, 9, u, v), PreconditionError);
   EXPECT_THROW(refine(model, 0, KnotVector::uniform(2, 2), v), PreconditionError);
-  const Surface surface = model.surface(0);
-  EXPECT_THAT(message_of<InputError>(
-                  [&] { (void)refined_to_surface_length(surface, Direction::kU, 1e-9); }),
-              HasSubstr("100000 spans"));
-  EXPECT_THAT(
-      message_of<InputError>([&] { (void)refined_to_surface_length(surface, Direction::kU, 0); }),
-      HasSubstr("length"));
+  // A knot of the neighbour cannot be raised further: the chain reaches "front" and names it.
+  PatchModel uneven = model;
+  const KnotVector twice = with_knots(u, {u.interior()[0]});
+  EXPECT_NO_THROW(refine(uneven, 0, twice, v));
+  uneven.joins[0].matching = true;
+  for (Patch& patch : uneven.patches) {
+    if (&patch == &uneven.patches[0]) continue;
+    // Pretend that the others carry the knot twice already.
+    const auto raise = [](const KnotVector& knots) {
+      return with_knots(knots, {knots.interior()[0]});
+    };
+    patch.u_knots = raise(patch.u_knots);
+    patch.v_knots = raise(patch.v_knots);
+    patch.points.assign(static_cast<size_t>(patch.u_size() * patch.v_size()), 0);
+  }
+  const std::string reason = message_of<InputError>([&] { (void)refine(uneven, 0, twice, v); });
+  EXPECT_THAT(reason, HasSubstr("refine face:"));
+  EXPECT_THAT(reason, HasSubstr("has multiplicity 3"));
 }
 
 }  // namespace

@@ -85,7 +85,7 @@ TEST(Trims, FreeFunctionsVanishOnTrimmingCurvesAndOutside) {
         }
         double outside = 0.0;
         double inside = 0.0;
-        for (const Uv& p : grid_points(patch, 30)) {
+        for (const Uv& p : grid_points(patch, 16)) {
           double& sum = inside_trim(patch.trim, p.u, p.v) ? inside : outside;
           sum = std::max(sum, basis_at(patch, i, j, p));
         }

@@ -107,12 +107,6 @@ void lock_side(const PatchModel& model, const LockedSide& locked, LockCollector*
                    true);
 }
 
-bool is_wrap(const PatchModel& model, const Join& join, const PointClasses& classes) {
-  return join.a.patch == join.b.patch && !join.opposed &&
-         is_u_side(join.a.side) == is_u_side(join.b.side) && !(join.a == join.b) &&
-         wrapped_rows(patch_of(model, join.a), across_direction(join.a.side), classes) > 0;
-}
-
 void lock_wrap(const PatchModel& model, const Join& join, LockCollector* locks) {
   const Patch& patch = patch_of(model, join.a);
   const Direction direction = across_direction(join.a.side);

@@ -207,10 +207,11 @@ std::string mismatch_of(const PatchModel& model, const std::vector<Vec3>& at,
                         bool opposed, double size) {
   const Patch& pa = patch_of(model, a);
   const Patch& pb = patch_of(model, b);
-  if (a.patch == b.patch && !opposed && is_u_side(a.side) == is_u_side(b.side) &&
-      wrapped_rows(pa, across_direction(a.side), classes) > 0) {
-    return {};
-  }
+  Join join;
+  join.a = a;
+  join.b = b;
+  join.opposed = opposed;
+  if (is_wrap(model, join, classes)) return {};
   for (const SideRef& ref : {a, b}) {
     if (!clamped_at(patch_of(model, ref), ref.side)) {
       return "the knots of " + label_of(model, ref) + " are not clamped";
@@ -296,6 +297,12 @@ int wrapped_rows(const Patch& patch, Direction direction, const PointClasses& cl
 bool is_collapsed(const Patch& patch, Side side, const PointClasses& classes) {
   const std::vector<int> row = row_classes(patch, side, classes);
   return std::all_of(row.begin(), row.end(), [&](int id) { return id == row.front(); });
+}
+
+bool is_wrap(const PatchModel& model, const Join& join, const PointClasses& classes) {
+  return join.a.patch == join.b.patch && !join.opposed &&
+         is_u_side(join.a.side) == is_u_side(join.b.side) && !(join.a == join.b) &&
+         wrapped_rows(patch_of(model, join.a), across_direction(join.a.side), classes) > 0;
 }
 
 std::vector<Join> find_joins(const PatchModel& model) {

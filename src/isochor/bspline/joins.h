@@ -32,6 +32,10 @@ int wrapped_rows(const Patch& patch, Direction direction, const PointClasses& cl
 // True when all boundary points of the side are one class: a pole, not an edge.
 bool is_collapsed(const Patch& patch, Side side, const PointClasses& classes);
 
+// True for the seam of a direction that wraps. Its poles do not tie boundary row to boundary row:
+// row i is row i + #rows - k for i < k = wrapped_rows.
+bool is_wrap(const PatchModel& model, const Join& join, const PointClasses& classes);
+
 // All joins of sides that share their points, in the order of the patches; seams and wraps too.
 // Collapsed sides have none. Three sides on one curve give three joins (see Closure::overused).
 std::vector<Join> find_joins(const PatchModel& model);

@@ -1,7 +1,6 @@
 #include "isochor/bspline/model_refinement.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -334,42 +333,6 @@ PatchModel without_unused_points(const PatchModel& model) {
     if (point >= 0) result.locks.push_back({point, lock.reason});
   }
   return result;
-}
-
-KnotVector refined_to_surface_length(const Surface& surface, Direction direction, double length) {
-  constexpr int kChords = 8;
-  const KnotVector& knots = knots_of(surface, direction);
-  const KnotVector& other =
-      knots_of(surface, direction == Direction::kU ? Direction::kV : Direction::kU);
-  std::vector<double> lines = other.breaks();
-  for (int k : other.spans()) lines.push_back(0.5 * (other[k] + other[k + 1]));
-  double pieces = 0.0;
-  std::vector<double> inserted;
-  for (int k : knots.spans()) {
-    double longest = 0.0;
-    for (double line : lines) {
-      double sum = 0.0;
-      Vec3 last;
-      for (int c = 0; c <= kChords; ++c) {
-        const double t = knots[k] + (knots[k + 1] - knots[k]) * c / kChords;
-        const Vec3 p = direction == Direction::kU ? surface.point(t, line) : surface.point(line, t);
-        if (c > 0) sum += (p - last).norm();
-        last = p;
-      }
-      longest = std::max(longest, sum);
-    }
-    const double count = std::max(1.0, std::ceil(longest / length * (1.0 - kSameLength)));
-    pieces += count;
-    if (!(length > 0.0) || !(pieces <= kMaxSpans)) {
-      throw InputError(
-          "", "length",
-          std::to_string(length) + " asks for more than " + std::to_string(kMaxSpans) + " spans");
-    }
-    for (double c = 1; c < count; ++c) {
-      inserted.push_back(knots[k] + (knots[k + 1] - knots[k]) * (c / count));
-    }
-  }
-  return with_knots(knots, std::move(inserted));
 }
 
 }  // namespace isochor

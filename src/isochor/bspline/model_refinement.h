@@ -37,8 +37,4 @@ PatchModel refine(const PatchModel& model, int patch, const KnotVector& u, const
 // The same model without points that no patch uses (and their ties); the others keep their order.
 PatchModel without_unused_points(const PatchModel& model);
 
-// Knots whose spans are nowhere longer than about `length` on the surface (each span's length is
-// measured by chords on several iso curves). Old knots stay. InputError as for refined_to_length.
-KnotVector refined_to_surface_length(const Surface& surface, Direction direction, double length);
-
 }  // namespace isochor
