@@ -62,7 +62,8 @@ bool TrimTest::crosses(const UvBox& box) const {
       if (std::max(a.v, b.v) < v0 || std::min(a.v, b.v) > v1) continue;
       // The box is missed when all its corners lie on one side of the segment's line.
       const double du = b.u - a.u, dv = b.v - a.v;
-      const auto side = [&](double u, double v) { return du * (v - a.v) - dv * (u - a.u); };
+      const Uv start = a;  // C++17 lambdas cannot capture a structured binding
+      const auto side = [=](double u, double v) { return du * (v - start.v) - dv * (u - start.u); };
       const double s[4] = {side(u0, v0), side(u1, v0), side(u1, v1), side(u0, v1)};
       const auto [low, high] = std::minmax_element(s, s + 4);
       if (*low <= 0.0 && *high >= 0.0) return true;
