@@ -1,0 +1,338 @@
+#include "isochor/edit/edit_session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "isochor/base/error.h"
+#include "isochor/base/tolerance.h"
+#include "isochor/bspline/joins.h"
+#include "isochor/edit/prepared_edit.h"
+
+namespace isochor {
+namespace {
+
+class Stopwatch {
+ public:
+  double milliseconds() const {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double, std::milli>(now - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+JoinRecord measure_joins(const PatchModel& before, const PatchModel& after) {
+  JoinRecord record;
+  for (const Join& join : before.joins) {
+    const Join now = measure_join(after, join.a, join.b, join.opposed);
+    ++record.count;
+    record.max_gap = std::max(record.max_gap, now.max_gap);
+    record.max_angle_rad = std::max(record.max_angle_rad, now.max_angle_rad);
+    record.max_curvature_jump = std::max(record.max_curvature_jump, now.max_curvature_jump);
+    if (join.smoothness >= Smoothness::kAlmost) {
+      record.angle_change_rad =
+          std::max(record.angle_change_rad, std::abs(now.max_angle_rad - join.max_angle_rad));
+    }
+  }
+  return record;
+}
+
+PatchChange change_of(const Patch& patch, const std::vector<Vec3>& displacement) {
+  const auto moved = [&](int id) { return displacement[static_cast<size_t>(id)] != Vec3::Zero(); };
+  PatchChange change;
+  change.moved = std::any_of(patch.points.begin(), patch.points.end(), moved);
+  for (size_t s = 0; s < kSides.size() && change.moved; ++s) {
+    for (const auto& [i, j] : side_indices(patch, kSides[s])) {
+      change.sides[s] = change.sides[s] || moved(patch.point(i, j));
+    }
+  }
+  return change;
+}
+
+}  // namespace
+
+struct EditSession::State {
+  // Everything that an undo brings back.
+  struct Snapshot {
+    PatchModel model;
+    double reference = 0.0;  // the volume that "keep" means
+    double excess = 0.0;     // the model's volume minus the reference, from exact changes
+    std::vector<PatchChange> changes;
+  };
+  struct Active {
+    Edit edit;
+    PreparedEdit prepared;
+    Snapshot candidate;
+    Certificate certificate;
+    double prepare_ms = 0.0;
+  };
+
+  Snapshot now;
+  Surroundings surroundings;
+  double patches_bound = 0.0;  // of the volume at the start
+  std::vector<Snapshot> undo, redo;
+  std::optional<Active> active;
+
+  double total() const { return now.reference + now.excess; }
+
+  // The change that the goal asks for, from the present volume.
+  double wanted_change(const VolumeGoal& goal) const {
+    switch (goal.kind) {
+      case VolumeGoal::Kind::kKeep:
+        return -now.excess;
+      case VolumeGoal::Kind::kFree:
+        return 0.0;
+      case VolumeGoal::Kind::kTarget:
+        return (goal.value - now.reference) - now.excess;
+      case VolumeGoal::Kind::kFactor:
+        return (goal.value - 1.0) * total();
+      case VolumeGoal::Kind::kChange:
+        return goal.value;
+    }
+    return 0.0;
+  }
+
+  Certificate refusal(const Edit& edit, std::string reason) const {
+    Certificate certificate;
+    certificate.name = edit.name;
+    certificate.resolved = edit;
+    certificate.outcome = Outcome::kRefused;
+    certificate.reason = std::move(reason);
+    certificate.volume.before = certificate.volume.after = total();
+    return certificate;
+  }
+
+  void solve(const std::vector<Vec3>& values);
+  void fill(const SolveResult& result, const std::vector<Vec3>& values);
+  void fill_places(const PatchModel& after, const std::vector<Vec3>& values,
+                   const std::vector<Vec3>& delta);
+};
+
+EditSession::EditSession(PatchModel model, Surroundings surroundings)
+    : state_(std::make_unique<State>()) {
+  validate(model);
+  state_->surroundings = std::move(surroundings);
+  const Bounded patches = VolumeForm(model).bounded_value(model.points);
+  state_->now.reference = patches.value + state_->surroundings.outside_volume;
+  state_->patches_bound = patches.bound;
+  state_->now.changes.resize(model.patches.size());
+  state_->now.model = std::move(model);
+}
+
+EditSession::~EditSession() = default;
+EditSession::EditSession(EditSession&&) noexcept = default;
+EditSession& EditSession::operator=(EditSession&&) noexcept = default;
+
+const PatchModel& EditSession::model() const { return state_->now.model; }
+
+const PatchModel& EditSession::candidate() const {
+  return state_->active ? state_->active->candidate.model : state_->now.model;
+}
+
+const std::vector<PatchChange>& EditSession::changes() const { return state_->now.changes; }
+
+double EditSession::volume() const { return state_->total(); }
+
+Certificate EditSession::begin(const Edit& edit) {
+  State& state = *state_;
+  ISOCHOR_REQUIRE(!state.active, "an edit is under way");
+  const bool needs_volume = edit.volume.kind != VolumeGoal::Kind::kFree;
+  if (!state.surroundings.closed && needs_volume && !edit.open) {
+    return state.refusal(edit, "the model is open (" + state.surroundings.why_open +
+                                   "), so it encloses no volume: close it, or write \"open\": "
+                                   "true to keep the integral of z dx dy, or \"volume\": \"free\"");
+  }
+  if (edit.method == Method::kAxis && edit.sink.kind == Sink::Kind::kDirection) {
+    return state.refusal(edit, "a sink along a direction needs the method \"isotropic\"");
+  }
+  if (edit.moves.empty() && (!needs_volume || edit.volume.kind == VolumeGoal::Kind::kKeep)) {
+    return state.refusal(edit, "the edit moves nothing and asks for no other volume");
+  }
+  const Stopwatch watch;
+  PatchModel rest = refined_for(state.now.model, edit);
+  PreparedEdit prepared(std::move(rest), edit);
+  state.active.emplace(State::Active{edit, std::move(prepared), {}, {}, 0.0});
+  state.active->prepare_ms = watch.milliseconds();
+  std::vector<Vec3> values;
+  for (const Move& move : edit.moves) values.push_back(move.vector);
+  return drag(values);
+}
+
+Certificate EditSession::drag(const std::vector<Vec3>& values) {
+  ISOCHOR_REQUIRE(state_->active.has_value(), "no edit is under way");
+  state_->solve(values);
+  return state_->active->certificate;
+}
+
+void EditSession::State::solve(const std::vector<Vec3>& values) {
+  const Stopwatch watch;
+  const double wanted = wanted_change(active->edit.volume);
+  Certificate certificate;
+  active->prepared.describe(certificate);
+  certificate.volume.before = total();
+  certificate.volume.wanted_change = wanted;
+  active->certificate = std::move(certificate);
+  if (active->certificate.coefficients == 0) {
+    active->certificate.outcome = Outcome::kInfeasible;
+    active->certificate.reason =
+        "the extent holds no free coefficient" +
+        std::string(active->certificate.locked.empty()
+                        ? ""
+                        : ": " + active->certificate.locked.front().reason) +
+        "; enlarge the extent or refine";
+    active->certificate.volume.after = total();
+    return;
+  }
+  const double scale = std::max(std::abs(total()), std::abs(total() + wanted));
+  const SolveResult result = active->prepared.solve_for(values, wanted, scale);
+  active->certificate.timings_ms["solve"] = watch.milliseconds();
+  active->certificate.timings_ms["prepare"] = active->prepare_ms;
+  fill(result, values);
+}
+
+void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>& values) {
+  Certificate& certificate = active->certificate;
+  certificate.outcome = result.outcome;
+  certificate.reason = result.reason;
+  certificate.conflicting = result.culprits;
+  certificate.redundant = result.redundant;
+  certificate.rows = result.rows;
+  certificate.rank = result.rank;
+  const bool free = active->edit.volume.kind == VolumeGoal::Kind::kFree;
+  certificate.freedom_left = std::max(0, result.freedom_left - (free ? 0 : 1));
+  certificate.iterations = result.iterations;
+  certificate.stationarity = result.stationarity;
+  certificate.volume.after = total();
+  if (result.outcome != Outcome::kDone) return;
+
+  const PatchModel& rest = active->prepared.rest();
+  PatchModel after = rest;
+  after.points = active->prepared.displaced(result.delta);
+  std::vector<Vec3> displacement(after.points.size());
+  std::vector<int> moved;
+  for (size_t i = 0; i < displacement.size(); ++i) {
+    displacement[i] = after.points[i] - rest.points[i];
+    if (displacement[i] != Vec3::Zero()) moved.push_back(static_cast<int>(i));
+    certificate.max_distance = std::max(certificate.max_distance, displacement[i].norm());
+  }
+  certificate.poles_moved = static_cast<int>(moved.size());
+  active->candidate = now;
+  for (size_t q = 0; q < rest.patches.size(); ++q) {
+    const PatchChange change = change_of(rest.patches[q], displacement);
+    certificate.patches_moved += change.moved;
+    PatchChange& all = active->candidate.changes[q];
+    all.moved = all.moved || change.moved;
+    for (size_t s = 0; s < 4; ++s) all.sides[s] = all.sides[s] || change.sides[s];
+  }
+  certificate.energy_before = result.positional_energy;
+  certificate.energy_after = result.energy;
+  fill_places(after, values, result.delta);
+  certificate.joins = measure_joins(rest, after);
+
+  const VolumeForm& form = active->prepared.volume_form();
+  VolumeRecord& volume = certificate.volume;
+  volume.after = volume.before + result.achieved_change;
+  volume.relative_change = result.achieved_change / std::abs(volume.before);
+  volume.bound = form.bounded_change(rest.points, after.points, form.support_of(moved)).bound /
+                 std::abs(volume.before);
+  volume.total_bound = surroundings.outside_bound + patches_bound;
+  const double missed = std::abs(result.achieved_change - volume.wanted_change);
+  volume.kept = !free && active->edit.method != Method::kTaylor &&
+                missed <= kVolumeKept * std::max(std::abs(volume.before), std::abs(volume.after));
+
+  active->candidate.model = std::move(after);
+  if (free || active->edit.volume.kind == VolumeGoal::Kind::kKeep) {
+    active->candidate.excess = now.excess + result.achieved_change;
+  } else {
+    active->candidate.reference = total() + volume.wanted_change;
+    active->candidate.excess = result.achieved_change - volume.wanted_change;
+  }
+}
+
+void EditSession::State::fill_places(const PatchModel& after, const std::vector<Vec3>& values,
+                                     const std::vector<Vec3>& delta) {
+  const PreparedEdit& prepared = active->prepared;
+  const auto record_of = [&](const ResolvedPlace& place, const Vec3& asked) {
+    MoveRecord record;
+    record.place = place.text;
+    record.from = place.position;
+    record.asked = asked;
+    if (place.coefficient) {
+      for (size_t k = 0; k < place.row.coefficient.size(); ++k) {
+        record.got +=
+            place.row.value[k].cwiseProduct(delta[static_cast<size_t>(place.row.coefficient[k])]);
+      }
+    } else {
+      record.got = after.surface(place.patch).point(place.uv.u, place.uv.v) - place.position;
+    }
+    record.error = (record.got - asked).norm();
+    return record;
+  };
+  for (size_t k = 0; k < prepared.moves().size(); ++k) {
+    active->certificate.moves.push_back(
+        record_of(prepared.moves()[k], prepared.displacement(k, values[k])));
+  }
+  for (const ResolvedPlace& hold : prepared.holds()) {
+    active->certificate.holds.push_back(record_of(hold, Vec3::Zero()));
+  }
+}
+
+Certificate EditSession::commit() {
+  State& state = *state_;
+  ISOCHOR_REQUIRE(state.active.has_value(), "no edit is under way");
+  ISOCHOR_REQUIRE(state.active->certificate.outcome == Outcome::kDone, "the edit was not done");
+  state.undo.push_back(std::move(state.now));
+  state.redo.clear();
+  state.now = std::move(state.active->candidate);
+  Certificate certificate = std::move(state.active->certificate);
+  state.active.reset();
+  return certificate;
+}
+
+void EditSession::cancel() { state_->active.reset(); }
+
+bool EditSession::undo() {
+  State& state = *state_;
+  ISOCHOR_REQUIRE(!state.active, "an edit is under way");
+  if (state.undo.empty()) return false;
+  state.redo.push_back(std::exchange(state.now, std::move(state.undo.back())));
+  state.undo.pop_back();
+  return true;
+}
+
+bool EditSession::redo() {
+  State& state = *state_;
+  ISOCHOR_REQUIRE(!state.active, "an edit is under way");
+  if (state.redo.empty()) return false;
+  state.undo.push_back(std::exchange(state.now, std::move(state.redo.back())));
+  state.redo.pop_back();
+  return true;
+}
+
+Certificate EditSession::apply(const Edit& edit, const CancelToken& token) {
+  Certificate certificate = begin(edit);
+  if (!state_->active) return certificate;  // refused before it began
+  size_t steps = 0;
+  for (const Move& move : edit.moves) steps = std::max(steps, move.drag.size());
+  for (size_t step = 0; step < steps && !token.cancelled(); ++step) {
+    std::vector<Vec3> values;
+    for (const Move& move : edit.moves) {
+      values.push_back(move.drag.empty() ? move.vector
+                                         : move.drag[std::min(step, move.drag.size() - 1)]);
+    }
+    certificate = drag(values);
+  }
+  if (token.cancelled()) {
+    certificate.outcome = Outcome::kCancelled;
+    certificate.reason = "cancelled by the user";
+  }
+  if (certificate.outcome == Outcome::kDone) return commit();
+  cancel();
+  return certificate;
+}
+
+}  // namespace isochor

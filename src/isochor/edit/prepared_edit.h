@@ -1,0 +1,65 @@
+// An edit resolved on a model: names found, freedom and constraint rows built, ready to solve for
+// any values of its moves. Internal to the edit layer; EditSession is its user.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "isochor/edit/certificate.h"
+#include "isochor/edit/displacement_space.h"
+#include "isochor/edit/solve.h"
+
+namespace isochor {
+
+// A place of the edit on this model.
+struct ResolvedPlace {
+  std::string text;  // for people
+  int patch = 0;
+  Uv uv;                         // surface places
+  bool coefficient = false;      // a coefficient instead of a surface point
+  Vec3 position = Vec3::Zero();  // where it is on the rest shape
+  CoefficientRow row;
+};
+
+class PreparedEdit {
+ public:
+  // `rest` is the refined model on which the edit acts. Throws InputError.
+  PreparedEdit(PatchModel rest, const Edit& edit);
+
+  const PatchModel& rest() const { return rest_; }
+  const VolumeForm& volume_form() const { return volume_; }
+  const std::vector<ResolvedPlace>& moves() const { return moves_; }
+  const std::vector<ResolvedPlace>& holds() const { return holds_; }
+
+  // The displacement that value `value` of move k asks for ("by" or "to").
+  Vec3 displacement(size_t k, const Vec3& value) const;
+
+  // Solves for the given values; `wanted_change` is that of the volume.
+  SolveResult solve_for(const std::vector<Vec3>& values, double wanted_change,
+                        double volume_scale) const;
+
+  // The points of rest() displaced by F delta.
+  std::vector<Vec3> displaced(const std::vector<Vec3>& delta) const;
+  // Fills what does not depend on the values: freedom, locks, resolved edit.
+  void describe(Certificate& certificate) const;
+
+ private:
+  ResolvedPlace resolve(const Place& place, const std::string& where) const;
+  void resolve_holds();
+  void select_coefficients();
+
+  PatchModel rest_;
+  Edit edit_;
+  VolumeForm volume_;
+  DisplacementSpace space_;
+  double size_ = 1.0;
+  std::vector<ResolvedPlace> moves_, holds_;
+  std::vector<std::string> hold_names_;
+  std::vector<char> extent_, sink_;
+};
+
+// The model of an edit's `refine`: exact knot insertion in the patches that the edit names.
+PatchModel refined_for(const PatchModel& model, const Edit& edit);
+
+}  // namespace isochor

@@ -1,0 +1,389 @@
+#include "isochor/edit/solve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "isochor/base/error.h"
+#include "isochor/base/tolerance.h"
+
+namespace isochor {
+namespace {
+
+// The direction of the correction is stationary when it turns by less than this (radians). Below
+// it the displacement changes by less than kReached of itself, so nothing visible is gained.
+constexpr double kStationary = 1e-13;
+constexpr int kMostIterations = 200;
+
+// The gradient is "zero on the sink" when projecting it leaves less than this part of it: what is
+// left is then rounding of the projection, not a direction.
+constexpr double kVanishing = 1e-10;
+
+double norm(const std::vector<double>& t) {
+  return std::sqrt(std::inner_product(t.begin(), t.end(), t.begin(), 0.0));
+}
+
+std::string list(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+// All state of one solve.
+class Solver {
+ public:
+  explicit Solver(const SolveProblem& problem) : problem_(problem), space_(*problem.space) {
+    std::vector<char> moving = problem.extent;
+    for (size_t c = 0; c < moving.size(); ++c) moving[c] = moving[c] || problem.sink[c];
+    support_ = problem.volume->support_of(space_.moved_points(moving));
+    result_.delta.assign(static_cast<size_t>(space_.size()), Vec3::Zero());
+  }
+
+  SolveResult run() {
+    switch (problem_.method) {
+      case Method::kIsotropic:
+        isotropic();
+        break;
+      case Method::kAxis:
+        by_axis();
+        break;
+      case Method::kTaylor:
+        taylor();
+        break;
+    }
+    if (result_.outcome == Outcome::kDone) {
+      result_.achieved_change =
+          problem_.volume->change(*problem_.points, points_at(result_.delta), support_);
+      result_.energy = energy(result_.delta);
+      check_size();
+    }
+    return std::move(result_);
+  }
+
+ private:
+  std::vector<Vec3> points_at(const std::vector<Vec3>& delta) const {
+    std::vector<Vec3> points = space_.expand(delta);
+    for (size_t i = 0; i < points.size(); ++i) points[i] += (*problem_.points)[i];
+    return points;
+  }
+
+  double change_at(const std::vector<Vec3>& delta) const {
+    return problem_.volume->change(*problem_.points, points_at(delta), support_);
+  }
+
+  // The gradient with respect to the coefficients at p + F delta.
+  std::vector<Vec3> gradient_at(const std::vector<Vec3>& delta) const {
+    const std::vector<Vec3> rows = problem_.volume->gradient(points_at(delta), support_);
+    std::vector<Vec3> full(static_cast<size_t>(space_.point_count()), Vec3::Zero());
+    for (size_t k = 0; k < support_.points.size(); ++k) {
+      full[static_cast<size_t>(support_.points[k])] = rows[k];
+    }
+    return space_.gather(full);
+  }
+
+  double energy(const std::vector<Vec3>& delta) const {
+    double sum = 0.0;
+    for (int c = 0; c < space_.size(); ++c) {
+      sum += 0.5 * space_.weight(c) * delta[static_cast<size_t>(c)].squaredNorm();
+    }
+    return sum;
+  }
+
+  void stop(Outcome outcome, std::string reason, std::vector<std::string> culprits = {}) {
+    result_.outcome = outcome;
+    result_.reason = std::move(reason);
+    result_.culprits = std::move(culprits);
+  }
+
+  ConstraintSystem positional_system(unsigned axes) {
+    std::vector<LinearConstraint> asked = problem_.constraints;
+    for (LinearConstraint& constraint : asked) constraint.axes &= axes;
+    return ConstraintSystem(space_, axis_slots(space_, problem_.extent, axes), asked, false);
+  }
+
+  ConstraintSystem correction_system(unsigned axes) {
+    const bool directed = problem_.sink_direction.squaredNorm() > 0.0;
+    Slots slots = directed ? direction_slots(space_, problem_.sink, problem_.sink_direction)
+                           : axis_slots(space_, problem_.sink, axes);
+    return ConstraintSystem(space_, std::move(slots), problem_.constraints, true);
+  }
+
+  // Adds the counts of a system to the result; false when the positions alone are impossible.
+  bool accept(const ConstraintSystem& system) {
+    result_.rows += system.rows();
+    result_.rank += system.rank();
+    result_.freedom_left += static_cast<int>(system.slots().size()) - system.rank();
+    for (const std::string& name : system.redundant()) {
+      auto& all = result_.redundant;
+      if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
+    }
+    if (!system.unreachable().empty()) {
+      stop(Outcome::kInfeasible,
+           "no free coefficient of the extent moves what " + list(system.unreachable()) +
+               " asks for: enlarge the extent, refine, or choose another place",
+           system.unreachable());
+      return false;
+    }
+    if (!system.conflicting().empty()) {
+      stop(Outcome::kConflicting,
+           "these contradict each other within the extent: " + list(system.conflicting()),
+           system.conflicting());
+      return false;
+    }
+    return true;
+  }
+
+  std::vector<std::string> constraint_names() const {
+    std::vector<std::string> names;
+    for (const LinearConstraint& constraint : problem_.constraints)
+      names.push_back(constraint.name);
+    return names;
+  }
+
+  // The volume cannot be corrected: says which of the published degenerate cases it is.
+  void stop_without_direction(const std::vector<double>& gradient, double gradient_scale,
+                              double missing, bool proven, const std::string& where) {
+    std::vector<std::string> culprits = constraint_names();
+    culprits.emplace_back("volume");
+    std::string text = "the volume is off by " + std::to_string(missing) + " and ";
+    if (norm(gradient) <= kVanishing * gradient_scale) {
+      text += "no free coefficient changes it" + where + " (the gradient vanishes on the extent)";
+    } else {
+      text += "every change of it" + where +
+              " would also move a constrained point (gradient and constraints are dependent on "
+              "the extent)";
+    }
+    stop(proven ? Outcome::kInfeasible : Outcome::kUndecided,
+         text + ": enlarge the extent or choose another sink", culprits);
+  }
+
+  bool close_enough(double missing) const {
+    return std::abs(missing) <= kVolumeKept * problem_.volume_scale;
+  }
+
+  // A correction larger than the model is no answer a designer could want.
+  void check_size() {
+    double largest = 0.0;
+    for (const Vec3& d : result_.delta) largest = std::max(largest, d.norm());
+    double asked = 0.0;
+    for (const LinearConstraint& c : problem_.constraints) asked = std::max(asked, c.value.norm());
+    if (largest <= problem_.size + 10.0 * asked) return;
+    stop(Outcome::kUndecided,
+         "keeping the volume within this extent would move control points by " +
+             std::to_string(largest) + ", more than the size of the model: enlarge the extent",
+         {"volume"});
+  }
+
+  void isotropic() {
+    const ConstraintSystem positions = positional_system(7);
+    if (!accept(positions)) return;
+    positions.add_to(positions.particular(), 1.0, result_.delta);
+    result_.positional_energy = energy(result_.delta);
+    if (problem_.volume_free) return;
+    const ConstraintSystem correction = correction_system(7);
+    const std::vector<Vec3> positional = result_.delta;
+    const double missing = problem_.change - change_at(positional);
+    std::vector<double> direction;
+    for (int k = 0; k < kMostIterations; ++k) {
+      const std::vector<double> gradient = correction.pull_back(gradient_at(result_.delta));
+      std::vector<double> next = gradient;
+      correction.project(next);
+      const double length = norm(next);
+      if (!(length > kVanishing * norm(gradient))) {
+        if (k == 0 && close_enough(missing)) return;
+        const bool proven = correction.slots().size() == static_cast<size_t>(correction.rank());
+        const double scale = problem_.size * problem_.size;
+        return stop_without_direction(gradient, scale, missing, proven, "");
+      }
+      for (double& value : next) value /= length;
+      if (!direction.empty()) {
+        result_.stationarity = turn(direction, next);
+        if (result_.stationarity <= kStationary) break;
+      }
+      direction = std::move(next);
+      result_.iterations = k + 1;
+      if (!step_along(correction, positional, direction)) return;
+    }
+  }
+
+  // The sine of the angle between two unit vectors, up to sign.
+  static double turn(const std::vector<double>& a, const std::vector<double>& b) {
+    const double along = std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+    double across = 0.0;
+    for (size_t s = 0; s < a.size(); ++s) {
+      const double difference = b[s] - along * a[s];
+      across += difference * difference;
+    }
+    return std::sqrt(across);
+  }
+
+  // delta = positional + s * direction with the exact volume; false when there is no such s.
+  bool step_along(const ConstraintSystem& correction, const std::vector<Vec3>& positional,
+                  const std::vector<double>& direction) {
+    std::vector<Vec3> unit(positional.size(), Vec3::Zero());
+    correction.add_to(direction, 1.0, unit);
+    const std::vector<Vec3> base = points_at(positional);
+    const LineCubic cubic = problem_.volume->line_cubic(base, space_.expand(unit), support_);
+    const double missing = problem_.change - change_at(positional);
+    double s = nearest_root(cubic, missing);
+    if (!std::isfinite(s)) {
+      stop(Outcome::kUndecided,
+           "no step along the volume gradient restores the volume: enlarge the extent", {"volume"});
+      return false;
+    }
+    // The points are rounded to doubles: correct s once or twice for what that costs.
+    for (int pass = 0; pass < 2; ++pass) {
+      result_.delta = positional;
+      correction.add_to(direction, s, result_.delta);
+      const double slope = cubic.slope(s);
+      if (pass == 1 || slope == 0.0) break;
+      s += (problem_.change - change_at(result_.delta)) / slope;
+    }
+    return true;
+  }
+
+  void by_axis() {
+    double positional_energy = 0.0;
+    for (size_t turn_of = 0; turn_of < 3; ++turn_of) {
+      const int axis = problem_.axis_order[turn_of];
+      const unsigned bit = 1u << axis;
+      const ConstraintSystem positions = positional_system(bit);
+      if (!accept(positions)) return;
+      const std::vector<Vec3> before = result_.delta;
+      positions.add_to(positions.particular(), 1.0, result_.delta);
+      positional_energy += energy(result_.delta) - energy(before);
+      if (problem_.volume_free) continue;
+      const double wanted = turn_of == 2 ? problem_.change : 0.0;
+      if (!correct_axis(axis, wanted)) return;
+    }
+    result_.positional_energy = positional_energy;
+  }
+
+  // Makes the change of volume `wanted` by the one axis; the volume is affine in it.
+  bool correct_axis(int axis, double wanted) {
+    const ConstraintSystem correction = correction_system(1u << axis);
+    const std::vector<Vec3> full = gradient_at(result_.delta);
+    const std::vector<double> gradient = correction.pull_back(full);
+    std::vector<double> direction = gradient;
+    correction.project(direction);
+    const double missing = wanted - change_at(result_.delta);
+    double scale = 0.0;
+    for (int c : correction.slots().coefficient)
+      scale += full[static_cast<size_t>(c)].squaredNorm();
+    scale = std::sqrt(scale);
+    const double length = norm(direction);
+    if (!(length > kVanishing * scale)) {
+      if (close_enough(missing)) return true;
+      const std::string where = std::string(" along ") + static_cast<char>('x' + axis);
+      stop_without_direction(gradient, scale, missing, true, where);
+      return false;
+    }
+    const std::vector<Vec3> start = result_.delta;
+    double s = missing / (length * length);
+    for (int pass = 0; pass < 2; ++pass) {
+      result_.delta = start;
+      correction.add_to(direction, s, result_.delta);
+      if (pass == 0) s += (wanted - change_at(result_.delta)) / (length * length);
+    }
+    return true;
+  }
+
+  void taylor() {
+    const ConstraintSystem positions = positional_system(7);
+    if (!accept(positions)) return;
+    positions.add_to(positions.particular(), 1.0, result_.delta);
+    result_.positional_energy = energy(result_.delta);
+    if (problem_.volume_free) return;
+    const ConstraintSystem correction = correction_system(7);
+    const std::vector<Vec3> none(result_.delta.size(), Vec3::Zero());
+    const std::vector<Vec3> full = gradient_at(none);
+    const std::vector<double> gradient = correction.pull_back(full);
+    std::vector<double> direction = gradient;
+    correction.project(direction);
+    double first_order = 0.0;
+    for (size_t c = 0; c < full.size(); ++c) first_order += full[c].dot(result_.delta[c]);
+    const double missing = problem_.change - first_order;
+    const double length = norm(direction);
+    if (!(length > kVanishing * norm(gradient))) {
+      if (close_enough(missing)) return;
+      return stop_without_direction(gradient, problem_.size * problem_.size, missing, true, "");
+    }
+    correction.add_to(direction, missing / (length * length), result_.delta);
+  }
+
+  const SolveProblem& problem_;
+  const DisplacementSpace& space_;
+  Support support_;
+  SolveResult result_;
+};
+
+}  // namespace
+
+SolveResult solve(const SolveProblem& problem) {
+  ISOCHOR_REQUIRE(problem.space != nullptr && problem.volume != nullptr &&
+                  problem.points != nullptr);
+  const auto count = static_cast<size_t>(problem.space->size());
+  ISOCHOR_REQUIRE(problem.extent.size() == count && problem.sink.size() == count, count);
+  return Solver(problem).run();
+}
+
+double nearest_root(const LineCubic& c, double target) {
+  // Real roots of cubic s^3 + quadratic s^2 + linear s - target, in closed form, then polished by
+  // Newton's method on the original coefficients.
+  std::vector<double> roots;
+  const double scale = std::max({std::abs(c.linear), std::abs(c.quadratic), std::abs(c.cubic)});
+  if (scale == 0.0) return target == 0.0 ? 0.0 : std::numeric_limits<double>::quiet_NaN();
+  const auto quadratic_roots = [&](double a, double b, double k) {
+    if (a == 0.0) {
+      if (b != 0.0) roots.push_back(-k / b);
+      return;
+    }
+    const double discriminant = b * b - 4.0 * a * k;
+    if (discriminant < 0.0) return;
+    const double q = -0.5 * (b + std::copysign(std::sqrt(discriminant), b));
+    roots.push_back(q / a);
+    if (q != 0.0) roots.push_back(k / q);
+  };
+  if (c.cubic == 0.0) {
+    quadratic_roots(c.quadratic, c.linear, -target);
+  } else {
+    const double a = c.quadratic / c.cubic, b = c.linear / c.cubic, k = -target / c.cubic;
+    const double q = (a * a - 3.0 * b) / 9.0;
+    const double r = (2.0 * a * a * a - 9.0 * a * b + 27.0 * k) / 54.0;
+    if (r * r < q * q * q) {
+      const double theta = std::acos(std::clamp(r / std::sqrt(q * q * q), -1.0, 1.0));
+      constexpr double kTurn = 2.0943951023931957;  // 2 pi / 3
+      for (int m = -1; m <= 1; ++m) {
+        roots.push_back(-2.0 * std::sqrt(q) * std::cos(theta / 3.0 + m * kTurn) - a / 3.0);
+      }
+    } else {
+      const double big = -std::copysign(std::cbrt(std::abs(r) + std::sqrt(r * r - q * q * q)), r);
+      roots.push_back(big + (big == 0.0 ? 0.0 : q / big) - a / 3.0);
+    }
+    // When the cubic term is tiny the closed form loses the small roots: Newton from the linear and
+    // quadratic models finds them again.
+    if (c.linear != 0.0) roots.push_back(target / c.linear);
+    quadratic_roots(c.quadratic, c.linear, -target);
+  }
+  double best = std::numeric_limits<double>::quiet_NaN();
+  for (double root : roots) {
+    if (!std::isfinite(root)) continue;
+    for (int k = 0; k < 60; ++k) {
+      const double slope = c.slope(root);
+      if (slope == 0.0) break;
+      const double step = (c.change(root) - target) / slope;
+      root -= step;
+      if (std::abs(step) <= kUnitRoundoff * std::abs(root)) break;
+    }
+    const double residual = std::abs(c.change(root) - target);
+    const double size = std::abs(target) + std::abs(c.linear * root) +
+                        std::abs(c.quadratic * root * root) +
+                        std::abs(c.cubic * root * root * root);
+    if (!(residual <= 64.0 * kUnitRoundoff * size)) continue;
+    if (std::isnan(best) || std::abs(root) < std::abs(best)) best = root;
+  }
+  return best;
+}
+
+}  // namespace isochor
