@@ -1,0 +1,124 @@
+#include "isochor/io/edits_json.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "isochor/base/error.h"
+
+namespace isochor {
+namespace {
+
+using ::testing::HasSubstr;
+
+// The text of one edit inside a script.
+std::string script_of(const std::string& keys) {
+  return R"({"isochor_edits": 1, "edits": [{"metric": "coefficients")" +
+         (keys.empty() ? "" : ", " + keys) + "}]}";
+}
+
+std::string error_of(const std::string& text) {
+  try {
+    parse_edits(text, "e.json");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(EditsJson, EveryKeyOfTheContract) {
+  const EditScript script = parse_edits(script_of(R"(
+    "name": "raise the crown", "scale": {"every": 4}, "refine": {"spans": [8, 9]},
+    "extent": {"radius": "5/2"},
+    "move": [{"patch": "top", "uv": [0.7, 0.8], "by": [0.2, "1/5", "0.9"]},
+             {"near": [1, 2, 3], "to": [1, 2, 4], "drag": [[1, 2, 3.5]]},
+             {"patch": "face:2", "pole": [3, 4], "by": [0, 0, 1]},
+             {"patch": "face:2", "uv01": [0, 1], "by": [0, 0, 1]}],
+    "hold": [{"patch": "top", "uv": [0.1, 0.5]}, {"symmetry": "y"}, {"edge": ["a", "b"]}],
+    "continuity": "C0", "volume": {"factor": 1.5}, "method": "axis", "axis_order": "zxy",
+    "open": true, "sink": {"direction": [0, 0, 1]})"),
+                                        "e.json");
+  ASSERT_EQ(script.edits.size(), 1u);
+  const Edit& edit = script.edits[0];
+  EXPECT_EQ(edit.name, "raise the crown");
+  EXPECT_EQ(edit.scale.every, 4);
+  EXPECT_EQ(edit.refine.spans, (std::array<int, 2>{8, 9}));
+  EXPECT_EQ(edit.extent.radius, 2.5);
+  ASSERT_EQ(edit.moves.size(), 4u);
+  EXPECT_EQ(edit.moves[0].vector, Vec3(0.2, 0.2, 0.9));  // exact strings and decimals agree
+  EXPECT_FALSE(edit.moves[1].relative);
+  EXPECT_EQ(edit.moves[1].drag[0], Vec3(1, 2, 3.5));
+  EXPECT_EQ(edit.moves[2].place.kind, Place::Kind::kCoefficient);
+  EXPECT_TRUE(edit.moves[3].place.normalised);
+  EXPECT_EQ(edit.holds[1].axis, 1);
+  EXPECT_EQ(edit.holds[2].edge[1], "b");
+  EXPECT_EQ(edit.continuity, Continuity::kC0);
+  EXPECT_EQ(edit.volume.kind, VolumeGoal::Kind::kFactor);
+  EXPECT_EQ(edit.method, Method::kAxis);
+  EXPECT_EQ(edit.axis_order, (std::array<int, 3>{2, 0, 1}));
+  EXPECT_TRUE(edit.open);
+  EXPECT_EQ(edit.sink.direction, Vec3(0, 0, 1));
+}
+
+TEST(EditsJson, DefaultsOfTheContract) {
+  const Edit edit = parse_edits(script_of(""), "e.json").edits[0];
+  EXPECT_EQ(edit.extent.kind, Extent::Kind::kRings);
+  EXPECT_EQ(edit.extent.rings, 4);
+  EXPECT_EQ(edit.method, Method::kIsotropic);
+  EXPECT_EQ(edit.continuity, Continuity::kMeasured);
+  EXPECT_EQ(edit.volume.kind, VolumeGoal::Kind::kKeep);
+  EXPECT_EQ(edit.scale.kind, Scale::Kind::kFinest);
+}
+
+TEST(EditsJson, FormatThenParseIsTheSame) {
+  for (const char* keys :
+       {R"("extent": {"loop": {"patch": "a", "uv": [[0,0],[1,0],[0,1]]}})",
+        R"("extent": {"poles": {"a": [[1,2],[3,4]]}}, "sink": {"faces": ["b"]})",
+        R"("extent": {"box": {"patch": "a", "u": [0, 0.1], "v": [0.25, 1]}})",
+        R"("extent": "all", "scale": {"knots": {"a": [[0.1], [0.2, 0.3]]}})",
+        R"("extent": {"points": [3, 1]}, "refine": {"length": 0.1}, "volume": {"change": -2e-3})",
+        R"("move": [{"near": [0.1, 0.2, 0.3], "to": [1, 2, 3]}], "method": "taylor")"}) {
+    const std::string once = format_edits(parse_edits(script_of(keys), "e.json"));
+    EXPECT_EQ(once, format_edits(parse_edits(once, "e.json"))) << keys;
+  }
+}
+
+TEST(EditsJson, MistakesNameThePlaceAndTheValue) {
+  EXPECT_THAT(error_of(script_of(R"("exent": {"rings": 3})")),
+              HasSubstr("e.json: edits[0]: unknown key \"exent\""));
+  EXPECT_THAT(error_of(script_of(R"("extent": {"radus": 3})")),
+              HasSubstr("edits[0].extent: unknown key \"radus\""));
+  EXPECT_THAT(error_of(script_of(R"("extent": {"radius": -3})")), HasSubstr("must be positive"));
+  EXPECT_THAT(error_of(script_of(R"("move": [{"patch": "a", "uv": [0, "NaN"], "by": [0,0,1]}])")),
+              HasSubstr("edits[0].move[0].uv[1]"));
+  EXPECT_THAT(error_of(script_of(R"("move": [{"patch": "a", "uv": [0, 1]}])")),
+              HasSubstr("exactly one of \"by\""));
+  EXPECT_THAT(error_of(script_of(R"("move": [{"patch": "a", "by": [0, 1, 2]}])")),
+              HasSubstr("exactly one of \"uv\""));
+  EXPECT_THAT(error_of(script_of(R"("method": "newton")")), HasSubstr("\"newton\""));
+  EXPECT_THAT(error_of(script_of(R"("axis_order": "xxy")")), HasSubstr("order of the axes"));
+  EXPECT_THAT(error_of("{\"isochor_edits\": 1, \"edits\": [}"),
+              HasSubstr("e.json: not valid JSON"));
+  EXPECT_THAT(error_of("{\"isochor_edits\": 1, \"edits\": [], \"edits\": []}"),
+              HasSubstr("occurs twice"));
+  EXPECT_THAT(error_of("{\"isochor_edits\": 7, \"edits\": []}"), HasSubstr("version 7"));
+  EXPECT_THAT(error_of("{\"edits\": []}"), HasSubstr("not an isochor_edits file"));
+  EXPECT_THAT(error_of("{\"isochor_edits\": 1, \"requires\": [\"warp\"], \"edits\": []}"),
+              HasSubstr("requires \"warp\""));
+  EXPECT_THAT(error_of(script_of(R"("move": [{"patch": "a", "uv": [0, 1e999], "by": [0,0,1]}])")),
+              HasSubstr("e.json"));
+}
+
+TEST(EditsJson, LaterFeaturesAreRefusedByName) {
+  EXPECT_THAT(error_of(R"({"isochor_edits": 1, "edits": [{}]})"), HasSubstr("coefficients"));
+  EXPECT_THAT(error_of(R"({"isochor_edits": 1, "edits": [{"metric": "energy"}]})"),
+              HasSubstr("\"energy\" is not available in this version"));
+  EXPECT_THAT(error_of(script_of(R"("scale": {"level": 1.5})")), HasSubstr("wavelet level"));
+  EXPECT_THAT(error_of(script_of(R"("hold": [{"plane": {}}])")), HasSubstr("hold in a plane"));
+  EXPECT_THAT(error_of(script_of(R"("hold": [{"patch": "a", "uv": [0,0], "normal": true}])")),
+              HasSubstr("holding a normal"));
+  EXPECT_THAT(error_of(script_of(R"("continuity": {"a": "C0"})")),
+              HasSubstr("continuity per edge"));
+}
+
+}  // namespace
+}  // namespace isochor
