@@ -75,4 +75,8 @@ inline constexpr double kSideNoise = 1e-10;
 // (its own diagonal)^2. Dimensionless; only for pictures: slender patches stay far above.
 inline constexpr double kSingularNormal = 1e-10;
 
+// A converted surface is the same as the original when their points at equal parameters are within
+// kSameSurface * diagonal. Dimensionless; a few roundings of coordinates.
+inline constexpr double kSameSurface = 1e-12;
+
 }  // namespace isochor

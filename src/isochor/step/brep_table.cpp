@@ -1,0 +1,78 @@
+#include "isochor/step/brep_table.h"
+
+#include <BRepBndLib.hxx>
+#include <Bnd_Box.hxx>
+#include <TopoDS.hxx>
+#include <map>
+
+#include "isochor/base/tolerance.h"
+
+namespace isochor::internal {
+
+std::string BrepTable::label(int face) const {
+  return "face:" + std::to_string(face + 1) + " (" + faces[static_cast<size_t>(face)].surface.kind +
+         ")";
+}
+
+void collect_edges(BrepTable& table) {
+  table.edges.clear();
+  TopTools_IndexedMapOfShape known;
+  for (size_t f = 0; f < table.faces.size(); ++f) {
+    const auto& loops = table.faces[f].loops;
+    for (size_t l = 0; l < loops.size(); ++l) {
+      for (size_t k = 0; k < loops[l].uses.size(); ++k) {
+        const TopoDS_Edge& edge = loops[l].uses[k].edge;
+        const auto index = static_cast<size_t>(known.Add(edge)) - 1;
+        if (index == table.edges.size()) table.edges.push_back({edge, {}});
+        table.edges[index].sites.push_back(
+            {static_cast<int>(f), static_cast<int>(l), static_cast<int>(k)});
+      }
+    }
+  }
+}
+
+namespace {
+
+// Editing one of several places would edit them all.
+void refuse_shared(FaceRecord& record, int places) {
+  if (places == 1) return;
+  record.shared = true;
+  if (record.surface.bspline) {
+    record.surface.surface.reset();
+    record.surface.refusal = "it belongs to a part that is used in " + std::to_string(places) +
+                             " places; an edit would change all of them";
+  }
+}
+
+}  // namespace
+
+BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces) {
+  BrepTable table;
+  table.shape = shape;
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, Standard_False);
+  if (!box.IsVoid() && !box.IsOpen()) {
+    table.z0 = 0.5 * (box.CornerMin().Z() + box.CornerMax().Z());
+    table.diagonal = box.CornerMin().Distance(box.CornerMax());
+  }
+  std::map<const void*, int> places;
+  for (int k = 1; k <= faces.Extent(); ++k) ++places[faces(k).TShape().get()];
+  for (int k = 1; k <= faces.Extent(); ++k) {
+    FaceRecord record;
+    record.face = TopoDS::Face(faces(k));
+    record.surface = face_surface(record.face);
+    record.loops = face_loops(record.face);
+    refuse_shared(record, places[record.face.TShape().get()]);
+    if (!record.surface.geometry.IsNull()) {
+      const double distance = kSideDistance * table.diagonal;
+      record.trim = record.surface.surface
+                        ? classify_trim(record.surface.geometry, record.loops, distance)
+                        : classify_sides(record.surface.geometry, record.loops, distance);
+    }
+    table.faces.push_back(std::move(record));
+  }
+  collect_edges(table);
+  return table;
+}
+
+}  // namespace isochor::internal

@@ -1,0 +1,186 @@
+#include "isochor/step/conversion.h"
+
+#include <GeomAbs_CurveType.hxx>
+#include <GeomAdaptor_Curve.hxx>
+#include <GeomConvert.hxx>
+#include <Geom_BSplineCurve.hxx>
+#include <Geom_Plane.hxx>
+#include <Geom_SurfaceOfLinearExtrusion.hxx>
+#include <Geom_TrimmedCurve.hxx>
+#include <Precision.hxx>
+#include <TColStd_Array1OfInteger.hxx>
+#include <TColStd_Array1OfReal.hxx>
+#include <TColStd_Array2OfReal.hxx>
+#include <TColgp_Array2OfPnt.hxx>
+#include <algorithm>
+#include <limits>
+
+#include "isochor/base/error.h"
+#include "isochor/base/tolerance.h"
+
+namespace isochor::internal {
+namespace {
+
+constexpr int kCubic = 3;
+constexpr int kSamples = 9;
+// Trimmed faces get this much more surface on each side, relative to their size.
+constexpr double kMargin = 0.05;
+
+// The box of the face's parameter curves.
+UvBox parameter_box(const FaceRecord& face) {
+  const double huge = std::numeric_limits<double>::infinity();
+  UvBox box{huge, -huge, huge, -huge};
+  const auto add = [&](double u, double v) {
+    box.u_min = std::min(box.u_min, u);
+    box.u_max = std::max(box.u_max, u);
+    box.v_min = std::min(box.v_min, v);
+    box.v_max = std::max(box.v_max, v);
+  };
+  for (const FaceLoop& loop : face.loops) {
+    for (const EdgeUse& use : loop.uses) {
+      if (!use.curve.IsNull()) add(use.start().X(), use.start().Y());
+      if (!use.curve.IsNull()) add(use.finish().X(), use.finish().Y());
+    }
+  }
+  // Curved edges reach farther than their ends.
+  for (const UvBox& b : face.trim.region.boundary) {
+    add(b.u_min, b.v_min);
+    add(b.u_max, b.v_max);
+  }
+  return box;
+}
+
+void widen(double& low, double& high) {
+  const double margin = kMargin * (high - low);
+  low -= margin;
+  high += margin;
+}
+
+// Knots and multiplicities of one cubic span.
+struct Span {
+  TColStd_Array1OfReal knots{1, 2};
+  TColStd_Array1OfInteger multiplicities{1, 2};
+  Span(double begin, double end) {
+    knots(1) = begin;
+    knots(2) = end;
+    multiplicities.Init(kCubic + 1);
+  }
+};
+
+double third(double begin, double end, int k) {
+  return k == kCubic ? end : begin + (end - begin) * k / kCubic;
+}
+
+Handle(Geom_BSplineSurface) of_plane(const Handle(Geom_Plane) & plane, const UvBox& box) {
+  TColgp_Array2OfPnt poles(1, kCubic + 1, 1, kCubic + 1);
+  for (int i = 0; i <= kCubic; ++i) {
+    for (int j = 0; j <= kCubic; ++j) {
+      poles(i + 1, j + 1) =
+          plane->Value(third(box.u_min, box.u_max, i), third(box.v_min, box.v_max, j));
+    }
+  }
+  const Span u(box.u_min, box.u_max), v(box.v_min, box.v_max);
+  return new Geom_BSplineSurface(poles, u.knots, v.knots, u.multiplicities, v.multiplicities,
+                                 kCubic, kCubic);
+}
+
+Handle(Geom_BSplineSurface)
+    of_extrusion(const Handle(Geom_SurfaceOfLinearExtrusion) & surface, const UvBox& box) {
+  Handle(Geom_Curve) basis = surface->BasisCurve();
+  const GeomAbs_CurveType type = GeomAdaptor_Curve(basis).GetType();
+  if (type != GeomAbs_BSplineCurve && type != GeomAbs_BezierCurve && type != GeomAbs_Line) {
+    return {};
+  }
+  if (type == GeomAbs_Line) basis = new Geom_TrimmedCurve(basis, box.u_min, box.u_max);
+  const Handle(Geom_BSplineCurve) curve = GeomConvert::CurveToBSplineCurve(basis);
+  if (curve->IsPeriodic()) curve->SetNotPeriodic();
+  if (curve->Degree() < kCubic) curve->IncreaseDegree(kCubic);
+  TColgp_Array2OfPnt poles(1, curve->NbPoles(), 1, kCubic + 1);
+  TColStd_Array2OfReal weights(1, curve->NbPoles(), 1, kCubic + 1);
+  for (int i = 1; i <= curve->NbPoles(); ++i) {
+    for (int j = 0; j <= kCubic; ++j) {
+      const gp_Vec along(surface->Direction());
+      poles(i, j + 1) = curve->Pole(i).Translated(along * third(box.v_min, box.v_max, j));
+      weights(i, j + 1) = curve->Weight(i);
+    }
+  }
+  TColStd_Array1OfReal knots(1, curve->NbKnots());
+  TColStd_Array1OfInteger multiplicities(1, curve->NbKnots());
+  curve->Knots(knots);
+  curve->Multiplicities(multiplicities);
+  const Span v(box.v_min, box.v_max);
+  if (!curve->IsRational()) {
+    return new Geom_BSplineSurface(poles, knots, v.knots, multiplicities, v.multiplicities,
+                                   curve->Degree(), kCubic);
+  }
+  return new Geom_BSplineSurface(poles, weights, knots, v.knots, multiplicities, v.multiplicities,
+                                 curve->Degree(), kCubic);
+}
+
+double largest_deviation(const Geom_Surface& a, const Geom_Surface& b, const UvBox& box) {
+  double deviation = 0.0;
+  for (int i = 0; i <= kSamples; ++i) {
+    for (int j = 0; j <= kSamples; ++j) {
+      const double u = box.u_min + (box.u_max - box.u_min) * i / kSamples;
+      const double v = box.v_min + (box.v_max - box.v_min) * j / kSamples;
+      deviation = std::max(deviation, a.Value(u, v).Distance(b.Value(u, v)));
+    }
+  }
+  return deviation;
+}
+
+bool has_circles(const std::string& kind) {
+  return kind == "cylinder" || kind == "cone" || kind == "sphere" || kind == "torus" ||
+         kind == "surface of revolution" || kind == "extruded surface";
+}
+
+}  // namespace
+
+Conversion convert_face(const FaceRecord& face, double diagonal) {
+  if (face.surface.bspline) return {{}, "it is a B-spline face already"};
+  if (face.surface.geometry.IsNull() || face.loops.empty()) return {{}, "it has no boundary"};
+  if (face.shared) return {{}, "it belongs to a part that is used in several places"};
+  if (!face.face.Location().IsIdentity()) return {{}, "its part is placed by an assembly"};
+  UvBox box = parameter_box(face);
+  if (!(box.u_max > box.u_min) || !(box.v_max > box.v_min)) return {{}, "it has no extent"};
+  const auto plane = Handle(Geom_Plane)::DownCast(face.surface.geometry);
+  const auto extrusion = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(face.surface.geometry);
+  if (face.trim.kind != TrimKind::kIsoBox && face.trim.kind != TrimKind::kNatural) {
+    if (!plane.IsNull()) widen(box.u_min, box.u_max);
+    widen(box.v_min, box.v_max);
+  }
+  Conversion result;
+  if (!plane.IsNull()) result.surface = of_plane(plane, box);
+  if (!extrusion.IsNull()) result.surface = of_extrusion(extrusion, box);
+  if (result.surface.IsNull()) {
+    result.refusal = has_circles(face.surface.kind)
+                         ? "no B-spline runs along its circles with the same parameters"
+                         : "there is no exact B-spline form of it";
+    return result;
+  }
+  const double deviation = largest_deviation(*face.surface.geometry, *result.surface, box);
+  if (!(deviation <= kSameSurface * diagonal)) {
+    result.surface.Nullify();
+    result.refusal = "its B-spline form would be " + std::to_string(deviation) + " off";
+  }
+  return result;
+}
+
+std::string convert_faces(BrepTable& table, const std::vector<int>& faces) {
+  for (int f : faces) {
+    ISOCHOR_REQUIRE(f >= 0 && f < static_cast<int>(table.faces.size()), f, table.faces.size());
+    FaceRecord& face = table.faces[static_cast<size_t>(f)];
+    if (face.surface.surface) continue;
+    const Conversion conversion = convert_face(face, table.diagonal);
+    if (conversion.surface.IsNull()) {
+      return table.label(f) + " cannot be turned into a B-spline face: " + conversion.refusal;
+    }
+    const std::string kind = face.surface.kind;
+    face.surface = describe_surface(conversion.surface);
+    face.surface.kind += " (was " + kind + ")";
+    face.trim = classify_trim(face.surface.geometry, face.loops, kSideDistance * table.diagonal);
+  }
+  return "";
+}
+
+}  // namespace isochor::internal

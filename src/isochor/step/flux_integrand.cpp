@@ -1,0 +1,300 @@
+#include "isochor/step/flux_integrand.h"
+
+#include <GeomAdaptor_Surface.hxx>
+#include <Geom_BSplineSurface.hxx>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <math.hxx>
+#include <math_Vector.hxx>
+
+#include "isochor/bspline/basis.h"
+#include "isochor/step/occt_surface.h"
+
+namespace isochor::internal {
+namespace {
+
+// Rules of this many points resolve a sixth of a turn, or a rational span, to rounding.
+constexpr int kSmoothPoints = 16;
+constexpr int kFinePoints = 25;
+constexpr int kAreaPoints = 6;  // areas are not polynomial: a few points more than flux needs
+constexpr int kMaxPoints = 48;
+constexpr double kWidestTurn = 1.1;  // radians per piece of an angular parameter
+constexpr double kRuleTest = 1e-15;  // a rule is good when twice as many points change less
+
+double least_step(const std::vector<double>& breaks) {
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t k = 1; k < breaks.size(); ++k) least = std::min(least, breaks[k] - breaks[k - 1]);
+  return least;
+}
+
+// Breaks of a periodic direction, repeated, because pcurves may run past the period.
+void repeat(std::vector<double>& breaks, double period) {
+  std::vector<double> all;
+  for (int turn = -1; turn <= 1; ++turn) {
+    for (size_t k = 0; k + 1 < breaks.size(); ++k) all.push_back(breaks[k] + turn * period);
+  }
+  all.push_back(breaks.back() + period);
+  breaks = std::move(all);
+}
+
+// A homogeneous point, with or without weight.
+struct Homogeneous {
+  double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
+  void add(double factor, const Homogeneous& h) {
+    x += factor * h.x;
+    y += factor * h.y;
+    z += factor * h.z;
+    w += factor * h.w;
+  }
+};
+
+}  // namespace
+
+UnitRule unit_rule(int count) {
+  math_Vector x(1, count), w(1, count);
+  math::GaussPoints(count, x);
+  math::GaussWeights(count, w);
+  UnitRule rule;
+  for (int k = 1; k <= count; ++k) {
+    rule.nodes.push_back(0.5 * (1.0 + x(k)));
+    rule.weights.push_back(0.5 * w(k));
+  }
+  return rule;
+}
+
+void FluxSums::add(const FluxSums& other, double factor) {
+  const double weight = std::abs(factor);
+  flux += other.flux * factor;
+  projected += other.projected * factor;
+  area += other.area * factor;
+  size += other.size * weight;
+  noise += other.noise * weight;
+  projected_noise += other.projected_noise * weight;
+}
+
+// Columns over i: the surface and its v derivative, contracted with B_j(v) and B_j'(v).
+struct FluxIntegrand::Line {
+  int low = 0;
+  std::vector<Homogeneous> value, slope;
+
+  Line(const Surface& surface, int low_index, int high_index, double v) : low(low_index) {
+    const BasisValues b = evaluate_basis(surface.v_knots(), v, 1);
+    for (int i = low_index; i <= high_index; ++i) {
+      Homogeneous at, derivative;
+      for (int j = 0; j <= b.degree; ++j) {
+        const size_t k = surface.index(i, b.first + j);
+        const double w = surface.rational() ? surface.weights()[k] : 1.0;
+        const Vec3& p = surface.poles()[k];
+        const Homogeneous h{w * p.x(), w * p.y(), w * p.z(), w};
+        at.add(b.value(0, j), h);
+        derivative.add(b.value(1, j), h);
+      }
+      value.push_back(at);
+      slope.push_back(derivative);
+    }
+  }
+};
+
+FluxIntegrand::FluxIntegrand(const Handle(Geom_Surface) & surface, double z0)
+    : surface_(surface), z0_(z0), breaks_(surface_breaks(surface)) {
+  const GeomAdaptor_Surface adaptor(surface);
+  switch (adaptor.GetType()) {
+    case GeomAbs_Plane:
+      polynomial_ = plane_ = true;
+      u_degree_ = v_degree_ = 1;
+      break;
+    case GeomAbs_BSplineSurface:
+    case GeomAbs_BezierSurface:
+      u_degree_ = adaptor.UDegree();
+      v_degree_ = adaptor.VDegree();
+      polynomial_ = !adaptor.IsURational() && !adaptor.IsVRational();
+      break;
+    case GeomAbs_SurfaceOfExtrusion:
+      u_degree_ = v_degree_ = 1;
+      break;
+    default:
+      break;
+  }
+  angular_u_ = u_degree_ <= 1 && adaptor.IsUPeriodic();
+  least_u_step_ = least_step(breaks_.u);
+  least_v_step_ = least_step(breaks_.v);
+  if (surface->IsUPeriodic()) repeat(breaks_.u, surface->UPeriod());
+  if (surface->IsVPeriodic()) repeat(breaks_.v, surface->VPeriod());
+  const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
+  if (!spline.IsNull() && !spline->IsUPeriodic() && !spline->IsVPeriodic()) {
+    spline_ = from_occt(*spline);
+  }
+}
+
+FluxIntegrand::Table FluxIntegrand::table_of(int points) const {
+  Table table{unit_rule(points), {}, {}};
+  if (!spline_) return table;
+  const KnotVector& knots = spline_->u_knots();
+  for (int span : knots.spans()) {
+    for (double node : table.rule.nodes) {
+      const double u = knots[span] + (knots[span + 1] - knots[span]) * node;
+      const BasisValues b = evaluate_basis_on_span(knots, span, u, 1);
+      for (int j = 0; j <= b.degree; ++j) {
+        table.values.push_back(b.value(0, j));
+        table.slopes.push_back(b.value(1, j));
+      }
+    }
+  }
+  return table;
+}
+
+void FluxIntegrand::prepare(double low, double high, double v_low, double v_high) {
+  double start = 0.5 * (low + high);
+  // From a knot there are only whole spans, which are tabulated, and one partial one.
+  double best = std::numeric_limits<double>::infinity();
+  const double middle = start;
+  for (double at : breaks_.u) {
+    if (low < at && at < high && std::abs(at - middle) < best) {
+      best = std::abs(at - middle);
+      start = at;
+    }
+  }
+  prepare_at(start, high, v_low, v_high);
+}
+
+void FluxIntegrand::prepare_at(double start, double u_end, double v_low, double v_high) {
+  start_ = start;
+  choose_rules(u_end, v_low, v_high);
+}
+
+void FluxIntegrand::choose_rules(double u_end, double v_low, double v_high) {
+  const int exact = std::min((3 * u_degree_ + 1) / 2, kMaxPoints);
+  if (polynomial_) {
+    rule_ = table_of(std::max(exact, plane_ ? 2 : kAreaPoints));
+    fine_rule_ = rule_;
+    return;
+  }
+  fine_rule_ = table_of(std::max(exact, kFinePoints));
+  // Weights that hardly vary need little more than a polynomial of the same degree.
+  for (int points = std::max(exact, kAreaPoints) + 2;; points += 3) {
+    rule_ = table_of(points);
+    if (points >= std::max(exact, kSmoothPoints)) return;
+    double change = 0.0;
+    double size = 0.0;
+    for (double s : {0.07, 0.31, 0.52, 0.77, 0.96}) {
+      const double v = v_low + s * (v_high - v_low);
+      const FluxSums coarse = inner(u_end, v, false);
+      const FluxSums fine = inner(u_end, v, true);
+      change = std::max(change, std::abs(static_cast<double>(fine.flux - coarse.flux)));
+      size = std::max(size, static_cast<double>(fine.size));
+    }
+    if (change <= kRuleTest * size) break;
+  }
+  // The other half of the face is judged by the pieces, with three more points.
+  fine_rule_ = table_of(static_cast<int>(rule_.rule.nodes.size()) + 3);
+}
+
+void FluxIntegrand::add_point(const gp_Pnt& p, const gp_Vec& du, const gp_Vec& dv, double w,
+                              FluxSums& sums) const {
+  const double height = p.Z() - z0_;
+  const double jacobian = du.X() * dv.Y() - dv.X() * du.Y();
+  const double speed_u = du.Magnitude();
+  const double speed_v = dv.Magnitude();
+  sums.flux += w * height * jacobian;
+  sums.projected += w * jacobian;
+  sums.area += w * du.Crossed(dv).Magnitude();
+  // Positions are good to eps |p|, derivatives to eps |p| per step of the knots.
+  const double reach = std::abs(p.X()) + std::abs(p.Y()) + std::abs(p.Z());
+  const double slope_u = speed_u + u_degree_ * reach / least_u_step_;
+  const double slope_v = speed_v + v_degree_ * reach / least_v_step_;
+  const double mixed = std::abs(w) * (slope_u * speed_v + slope_v * speed_u);
+  sums.size += std::abs(w * height * jacobian);
+  sums.noise += std::abs(height) * mixed + reach * std::abs(w * jacobian);
+  sums.projected_noise += mixed;
+}
+
+void FluxIntegrand::add_piece(double from, double to, double v, const UnitRule& rule, double sign,
+                              FluxSums& sums) const {
+  gp_Pnt p;
+  gp_Vec du, dv;
+  for (size_t k = 0; k < rule.nodes.size(); ++k) {
+    surface_->D1(from + (to - from) * rule.nodes[k], v, p, du, dv);
+    add_point(p, du, dv, sign * (to - from) * rule.weights[k], sums);
+  }
+}
+
+void FluxIntegrand::add_span(const Line& line, int ordinal, double from, double to, double sign,
+                             const Table& table, FluxSums& sums) const {
+  const KnotVector& knots = spline_->u_knots();
+  const int span = knots.spans()[static_cast<size_t>(ordinal)];
+  const auto count = static_cast<size_t>(knots.degree()) + 1;
+  const bool whole = from == knots[span] && to == knots[span + 1];
+  const size_t first = static_cast<size_t>(span - knots.degree() - line.low);
+  BasisValues partial;
+  for (size_t k = 0; k < table.rule.nodes.size(); ++k) {
+    if (!whole) {
+      partial = evaluate_basis_on_span(knots, span, from + (to - from) * table.rule.nodes[k], 1);
+    }
+    const size_t at = (static_cast<size_t>(ordinal) * table.rule.nodes.size() + k) * count;
+    Homogeneous s, su, sv;
+    for (size_t j = 0; j < count; ++j) {
+      const double b = whole ? table.values[at + j] : partial.value(0, static_cast<int>(j));
+      const double slope = whole ? table.slopes[at + j] : partial.value(1, static_cast<int>(j));
+      s.add(b, line.value[first + j]);
+      su.add(slope, line.value[first + j]);
+      sv.add(b, line.slope[first + j]);
+    }
+    const double w = s.w;
+    const gp_Pnt p(s.x / w, s.y / w, s.z / w);
+    const gp_Vec du((su.x - su.w * p.X()) / w, (su.y - su.w * p.Y()) / w,
+                    (su.z - su.w * p.Z()) / w);
+    const gp_Vec dv((sv.x - sv.w * p.X()) / w, (sv.y - sv.w * p.Y()) / w,
+                    (sv.z - sv.w * p.Z()) / w);
+    add_point(p, du, dv, sign * (to - from) * table.rule.weights[k], sums);
+  }
+}
+
+FluxSums FluxIntegrand::line(double u, double v, const Table& table) const {
+  FluxSums sums;
+  const double low = std::min(start_, u);
+  const double high = std::max(start_, u);
+  if (!(low < high)) return sums;
+  const double sign = u >= start_ ? 1.0 : -1.0;
+  const KnotVector& knots = spline_->u_knots();
+  const int first_span = knots.span_of(low);
+  const int last_span = knots.span_of(high);
+  const Line contracted(*spline_, first_span - knots.degree(), last_span, v);
+  const std::vector<int>& spans = knots.spans();
+  for (size_t k = 0; k < spans.size(); ++k) {
+    const int span = spans[k];
+    if (span < first_span || span > last_span) continue;
+    // The end spans go on beyond the domain.
+    const double from = span == first_span ? low : knots[span];
+    const double to = span == last_span ? high : knots[span + 1];
+    if (from < to) add_span(contracted, static_cast<int>(k), from, to, sign, table, sums);
+  }
+  return sums;
+}
+
+FluxSums FluxIntegrand::inner(double u, double v, bool fine) const {
+  const Table& table = fine ? fine_rule_ : rule_;
+  if (spline_) return line(u, v, table);
+  const double low = std::min(start_, u);
+  const double high = std::max(start_, u);
+  const double sign = u >= start_ ? 1.0 : -1.0;
+  FluxSums sums;
+  double from = low;
+  const auto piece = [&](double to) {
+    const int parts =
+        angular_u_ ? std::max(1, static_cast<int>(std::ceil((to - from) / kWidestTurn))) : 1;
+    const double step = (to - from) / parts;
+    for (int k = 0; k < parts; ++k) {
+      const double end = k + 1 == parts ? to : from + (k + 1) * step;
+      add_piece(from + k * step, end, v, table.rule, sign, sums);
+    }
+    from = to;
+  };
+  for (double at : breaks_.u) {
+    if (at > from && at < high) piece(at);
+  }
+  if (high > from) piece(high);
+  return sums;
+}
+
+}  // namespace isochor::internal
