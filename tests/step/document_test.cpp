@@ -5,11 +5,13 @@
 #include <BRepCheck_Analyzer.hxx>
 #include <BRep_Tool.hxx>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
+#include "isochor/step/file_surface.h"
 #include "step/shapes.h"
 #include "step/temp_folder.h"
 
@@ -103,6 +105,40 @@ TEST(Document, ShapesOfTheTestsAreValid) {
     EXPECT_TRUE(BRepCheck_Analyzer(shape).IsValid());
     EXPECT_TRUE(BRep_Tool::IsClosed(shape) || shape.ShapeType() != TopAbs_SHELL);
   }
+}
+
+TEST(FileSurface, TheFilesOwnNumbersAreFoundAndGivenBack) {
+  const TempFolder folder;
+  auto barrel = shapes::document_of(shapes::barrel(true));
+  write_document(barrel, folder.file("in.step"));
+  Document document = load_document(folder.file("in.step"));
+  auto changed = internal::changed_by_reader(document);
+  ASSERT_EQ(changed.size(), 1u) << "the reader makes the closed face periodic";
+  auto& [face, surface] = *changed.begin();
+  std::vector<Vec3> poles = surface.poles();
+  for (auto& p : poles) p.x() = std::nextafter(p.x(), 10.0);
+  surface = Surface(surface.u_knots(), surface.v_knots(), poles);
+  internal::WriteSettings settings;
+  settings.surfaces = changed;
+  write_document(document, folder.file("out.step"), settings);
+  const Document after = load_document(folder.file("out.step"));
+  const auto found = internal::file_surface(after, face);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->poles(), poles);
+  EXPECT_TRUE(BRepCheck_Analyzer(after.shape).IsValid());
+}
+
+TEST(FileSurface, OtherSizesAndOtherFacesStay) {
+  const TempFolder folder;
+  auto cube = shapes::document_of(shapes::bicubic_cube());
+  internal::WriteSettings settings;
+  const auto line = KnotVector::uniform(1, 1);
+  settings.surfaces.emplace(0, Surface(line, line, std::vector<Vec3>(4, Vec3(7, 7, 7))));
+  write_document(cube, folder.file("out.step"), settings);
+  const Document after = load_document(folder.file("out.step"));
+  EXPECT_EQ(spline_numbers(after), spline_numbers(cube));
+  EXPECT_TRUE(internal::changed_by_reader(after).empty());
+  EXPECT_FALSE(internal::file_surface(cube, 0).has_value()) << "not read from a file";
 }
 
 TEST(Document, NamesColoursAndStructureSurvive) {

@@ -1,9 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <BRepPrimAPI_MakeBox.hxx>
 
 #include <fstream>
 
 #include "isochor/base/error.h"
+#include "isochor/bspline/refinement.h"
 #include "isochor/step/checked_write.h"
 #include "isochor/step/exchange.h"
 #include "isochor/step/solid_model.h"
@@ -92,6 +94,50 @@ TEST(WriteEditedShapes, AssembliesKeepTheirLabels) {
   const Document after = load_document(folder.file("pair_out.step"));
   EXPECT_EQ(after.name_of(after.face(0)), "lid");
   EXPECT_EQ(after.unit.name, "inch");
+}
+
+// Everything through the patch model, as the editor does it.
+TEST(WriteEditedShapes, ModelsThatWereReadCanBeWritten) {
+  const TempFolder folder;
+  const auto input = write(shapes::document_of(shapes::bicubic_cube(), "inch"), folder, "in.step");
+  const SolidModel solid = read_solid(input);
+  ASSERT_EQ(solid.patches.patches.size(), 6u);
+  std::vector<Vec3> points = solid.patches.points;
+  const Patch& patch = solid.patches.patches[2];
+  points[static_cast<size_t>(patch.point(2, 3))] += Vec3(0.01, 0.1, 0.02);
+  const auto report =
+      write_edited(input, {}, {{2, solid.patches.surface(2, points), {}}}, folder.file("out.step"));
+  ASSERT_TRUE(report.written) << report.refusal;
+  EXPECT_EQ(report.edited_exact, 1);
+  EXPECT_EQ(report.faces_identical, 5);
+  const SolidModel again = read_solid(folder.file("out.step"));
+  EXPECT_EQ(again.patches.surface(2).poles(), solid.patches.surface(2, points).poles());
+  EXPECT_EQ(again.unit, "inch");
+}
+
+TEST(WriteEditedShapes, AConvertedPlaneIsEdited) {
+  const TempFolder folder;
+  const auto box = shapes::document_of(BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Solid());
+  const auto input = write(box, folder, "box.step");
+  ReadOptions options;
+  options.convert = {5};
+  const SolidModel solid = read_solid(input, options);
+  ASSERT_EQ(solid.patches.patches.size(), 1u);
+  Surface surface = solid.patches.surface(0);
+  const auto& u = surface.u_knots();
+  const auto& v = surface.v_knots();
+  surface = refine(surface, refined_to_spans(u, 8), refined_to_spans(v, 8));
+  std::vector<Vec3> poles = surface.poles();
+  poles[surface.index(5, 5)] += Vec3(0.0, 0.0, 0.2);
+  const EditedFace edit{5, Surface(surface.u_knots(), surface.v_knots(), poles), {}};
+  const auto report = write_edited(input, options, {edit}, folder.file("out.step"));
+  ASSERT_TRUE(report.written) << report.refusal;
+  EXPECT_EQ(report.edited_exact, 1);
+  EXPECT_TRUE(report.reread.closed);
+  EXPECT_NE(report.reread.volume, report.before.volume);
+  // Without the request the face is what the file says.
+  EXPECT_THAT(write_edited(input, {}, {edit}, folder.file("no.step")).refusal,
+              HasSubstr("not a B-spline"));
 }
 
 TEST(WriteEditedShapes, RefusalsLeaveAnOlderOutputAlone) {

@@ -34,10 +34,11 @@ void note_losses(const Document& document, FileFormat output, std::vector<std::s
 }
 
 // Child 1: everything up to the temporary file.
-WriteReport change_and_write(const WriteJob& job, const std::string& path,
-                             const WriteSettings& settings) {
+WriteReport change_and_write(const WriteJob& job, const std::string& path, WriteSettings settings) {
   WriteReport report;
   Document document = job.source();
+  if (format_of(path) == FileFormat::kStep) settings.surfaces = changed_by_reader(document);
+  for (const auto& edit : job.edits) settings.surfaces.erase(edit.face);
   report.notices = document.notices;
   report.before = shape_facts(document);
   const TopoDS_Shape old = document.shape;

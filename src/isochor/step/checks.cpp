@@ -14,9 +14,10 @@ namespace {
 // Rounding allowed when two lengths of one model are compared; relative to its diagonal.
 constexpr double kLengthRounding = 1e-12;
 
-// Area and volume after a round trip; relative. B-spline faces come back bit for bit, analytic ones
-// move by a unit in the last place, and trimming curves are integrated to about 1e-9.
-constexpr double kSameMeasure = 1e-8;
+// Volume and area after a round trip; relative. B-spline faces come back bit for bit and analytic
+// ones move by a unit in the last place; the area is integrated to some six digits only.
+constexpr double kSameVolume = 1e-8;
+constexpr double kSameArea = 1e-5;
 
 // Tolerances are stored with the digits of a double but read through a sum.
 constexpr double kSameTolerance = 1e-9;
@@ -54,12 +55,11 @@ std::string different_topology(const ShapeFacts& a, const ShapeFacts& b) {
   return "";
 }
 
-// Measures that may be unknown (0 with an infinite bound) are not compared.
-std::string different_measure(const std::string& what, double a, double b, double bound,
-                              double scale) {
-  if (!std::isfinite(a) || !std::isfinite(b)) return "";
-  const double allowed = kSameMeasure * std::max({std::abs(a), std::abs(b), scale}) + bound;
-  return std::abs(a - b) <= allowed ? "" : changed(what, a, b);
+// Measures that are not known (infinite) are not compared.
+std::string different_measure(const std::string& what, double a, double b, double allowed) {
+  if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(allowed)) return "";
+  if (std::abs(a - b) <= allowed) return "";
+  return changed(what, a, b) + " (by " + number(b - a) + ")";
 }
 
 // A name that is missing afterwards; readers may add names of their own.
@@ -119,14 +119,14 @@ std::string objection_to_reread(const ShapeFacts& written, const ShapeFacts& rer
     text = grew("the largest tolerance", written.max_tolerance, reread.max_tolerance,
                 kSameTolerance * written.max_tolerance);
   }
-  const double scale = written.diagonal;
   if (text.empty()) {
-    text = different_measure("the area", written.area, reread.area, 0.0, 0.0);
+    text = different_measure("the area", written.area, reread.area, kSameArea * written.area);
   }
   if (text.empty()) {
+    const double size = written.diagonal * written.area;
     text = different_measure("the volume", written.volume, reread.volume,
-                             written.volume_bound + reread.volume_bound,
-                             kLengthRounding * scale * scale * scale);
+                             written.volume_bound + reread.volume_bound +
+                                 kSameVolume * std::abs(written.volume) + kLengthRounding * size);
   }
   if (text.empty() && labels) {
     const std::string lost = lost_name(written.names, reread.names);

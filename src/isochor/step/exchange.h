@@ -5,6 +5,7 @@
 #include <string>
 
 #include "isochor/step/document.h"
+#include "isochor/step/file_surface.h"
 
 namespace isochor::internal {
 
@@ -25,6 +26,8 @@ void require_xde(Document& document);
 struct WriteSettings {
   // Parameter curves of STEP edges. Some solids survive a round trip only without them.
   bool parameter_curves = true;
+  // Faces whose surfaces get the input file's own numbers back (STEP only).
+  FileSurfaces surfaces;
 };
 
 // Writes to `path` itself, with all digits and in the document's unit; the format goes by the

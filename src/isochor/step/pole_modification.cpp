@@ -45,13 +45,15 @@ Standard_Boolean PoleModification::NewCurve2d(const TopoDS_Edge& edge, const Top
                                               const TopoDS_Face& /*new_face*/,
                                               Handle(Geom2d_Curve) & curve,
                                               Standard_Real& tolerance) {
-  if (!surfaces_.IsBound(face) && !curves_.IsBound(edge)) return Standard_False;
-  // Of a seam, the orientation of the edge says which of its two curves is meant.
+  const bool new_surface = surfaces_.IsBound(face);
+  if (!new_surface && !curves_.IsBound(edge)) return Standard_False;
+  // Of a seam, the orientation of the edge says which of its two curves is meant. Planes store no
+  // curves; once converted they need those that were computed.
   double first = 0.0, last = 0.0;
   Standard_Boolean stored = Standard_False;
   curve = BRep_Tool::CurveOnSurface(edge, face, first, last, &stored);
   tolerance = BRep_Tool::Tolerance(edge);
-  return !curve.IsNull() && stored;
+  return !curve.IsNull() && (stored || new_surface);
 }
 
 Standard_Boolean PoleModification::NewParameter(const TopoDS_Vertex&, const TopoDS_Edge&,

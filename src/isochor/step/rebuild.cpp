@@ -9,8 +9,10 @@
 #include <TopoDS.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <map>
 
 #include "isochor/base/error.h"
+#include "isochor/step/conversion.h"
 #include "isochor/step/occt_surface.h"
 #include "isochor/step/pole_modification.h"
 
@@ -52,7 +54,7 @@ gp_Pnt point_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
 // Hands each edited face to the part that stores it; a refusal when that is not one part.
 std::string distribute(const Document& document, const std::vector<EditedFace>& faces,
-                       std::vector<Part>& parts) {
+                       const std::map<int, Surface>& converted, std::vector<Part>& parts) {
   for (const auto& edited : faces) {
     const TopoDS_Face face = document.face(edited.face);
     const int places = places_of(face, document);
@@ -67,11 +69,30 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
       for (int k = 1; k <= own.Extent() && !found; ++k) {
         if (!own(k).IsPartner(face)) continue;
         found = true;
-        part.changes.push_back(
-            {TopoDS::Face(own(k)), handle_of(edited.face), local_surface(edited.surface, face)});
+        part.changes.push_back({TopoDS::Face(own(k)),
+                                handle_of(edited.face),
+                                local_surface(edited.surface, face),
+                                {}});
+        const auto before = converted.find(edited.face);
+        if (before != converted.end()) part.changes.back().before = before->second;
       }
     }
     if (!found) return handle_of(edited.face) + ": belongs to no part of the file";
+  }
+  return "";
+}
+
+// The surfaces of faces that are to be B-spline faces although the file has them as something else,
+// as read_solid showed them. Converted faces stand where their part stands (see convert_face).
+std::string convert_all(const Document& document, const std::vector<int>& convert,
+                        std::map<int, Surface>& converted) {
+  if (convert.empty()) return "";
+  BrepTable table = brep_table(document.shape, document.faces);
+  const std::string refusal = convert_faces(table, convert);
+  if (!refusal.empty()) return refusal;
+  for (int f : convert) {
+    const auto& surface = table.faces[static_cast<size_t>(f)].surface.surface;
+    if (surface && plain_bspline(document.face(f)).IsNull()) converted.emplace(f, *surface);
   }
   return "";
 }
@@ -136,9 +157,12 @@ TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan) {
 }
 
 std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
-                    const std::vector<int>& /*convert*/) {
+                    const std::vector<int>& convert) {
+  std::map<int, Surface> converted;
+  std::string refusal = convert_all(document, convert, converted);
+  if (!refusal.empty()) return refusal;
   std::vector<Part> parts = parts_of(document);
-  std::string refusal = distribute(document, faces, parts);
+  refusal = distribute(document, faces, converted, parts);
   for (const auto& part : parts) {
     if (refusal.empty() && !part.changes.empty()) refusal = rebuild_one(document, part);
   }

@@ -16,8 +16,9 @@
 
 namespace isochor::internal {
 
-// Changes the document. Returns why it cannot be done, in words, or nothing; then the document may
-// be half changed and must be dropped. Throws PreconditionError when a face number is out of range.
+// Changes the document; `convert` as in ReadOptions. Returns why it cannot be done, in words, or
+// nothing; then the document may be half changed and must be dropped. Throws PreconditionError when
+// a face number is out of range.
 [[nodiscard]] std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
                                   const std::vector<int>& convert = {});
 

@@ -44,10 +44,12 @@ class Planner {
 
   void add(const FaceChange& change) {
     const auto spline = plain_bspline(change.face);
-    if (spline.IsNull()) return refuse(change.handle, "is not a B-spline face");
+    if (spline.IsNull() && !change.before) {
+      return refuse(change.handle, "is not a B-spline face");
+    }
     TopLoc_Location location;
     BRep_Tool::Surface(change.face, location);
-    const Surface before = from_occt(*spline);
+    const Surface before = change.before ? *change.before : from_occt(*spline);
     try {
       const Displacement displacement(change.face, before, change.surface);
       plan_.surfaces.push_back({change.face, to_occt(change.surface)});

@@ -14,6 +14,7 @@
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
 #include <gp_Pnt.hxx>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -28,6 +29,7 @@ struct FaceChange {
   TopoDS_Face face;
   std::string handle;  // for messages
   Surface surface;
+  std::optional<Surface> before;  // of a face that was no B-spline and was converted
 };
 
 struct NewSurface {

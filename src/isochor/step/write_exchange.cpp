@@ -53,6 +53,9 @@ void write_step(Document& document, const std::string& path, const WriteSettings
     throw InputError(path, "", "the shape cannot be written as STEP");
   }
   const auto session = writer.ChangeWriter().WS();
+  for (const auto& [face, surface] : settings.surfaces) {
+    restore_numbers(session, document.face(face), surface);
+  }
   const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
   // The writer's own printing rounds to 12 digits, so print here.
   StepData_StepWriter printer(model);
