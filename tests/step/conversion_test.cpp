@@ -86,6 +86,23 @@ TEST(Conversion, ExtrudedCurveKeepsItsParameters) {
   }
 }
 
+TEST(Conversion, DiscBoundedByOneCircleIsCoveredWhole) {
+  BrepTable table = table_of(BRepPrimAPI_MakeCylinder(2.0, 3.0).Shape());
+  const double before = volume_of(table);
+  for (int f = 0; f < 3; ++f) {
+    const FaceRecord& face = table.faces[static_cast<size_t>(f)];
+    if (face.surface.kind != "plane") continue;
+    ASSERT_EQ(convert_faces(table, {f}), "");
+    EXPECT_EQ(face.trim.kind, TrimKind::kTrimmed);
+    const UvBox& domain = face.trim.domain;
+    for (const UvBox& box : face.trim.region.boundary) {
+      EXPECT_LT(domain.u_min, box.u_min);
+      EXPECT_LT(box.v_max, domain.v_max);
+    }
+  }
+  EXPECT_NEAR(volume_of(table), before, 1e-14 * before);
+}
+
 TEST(Conversion, CirclesAreRefusedWithTheReason) {
   BrepTable table = table_of(BRepPrimAPI_MakeCylinder(1.0, 2.0).Shape());
   for (size_t f = 0; f < table.faces.size(); ++f) {

@@ -1,5 +1,8 @@
 #include "isochor/step/conversion.h"
 
+#include <BndLib_Add2dCurve.hxx>
+#include <Bnd_Box2d.hxx>
+#include <Geom2dAdaptor_Curve.hxx>
 #include <GeomAbs_CurveType.hxx>
 #include <GeomAdaptor_Curve.hxx>
 #include <GeomConvert.hxx>
@@ -7,13 +10,12 @@
 #include <Geom_Plane.hxx>
 #include <Geom_SurfaceOfLinearExtrusion.hxx>
 #include <Geom_TrimmedCurve.hxx>
-#include <Precision.hxx>
+#include <Standard_Failure.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <TColStd_Array2OfReal.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <algorithm>
-#include <limits>
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
@@ -26,26 +28,14 @@ constexpr int kSamples = 9;
 // Trimmed faces get this much more surface on each side, relative to their size.
 constexpr double kMargin = 0.05;
 
-// The box of the face's parameter curves.
-UvBox parameter_box(const FaceRecord& face) {
-  const double huge = std::numeric_limits<double>::infinity();
-  UvBox box{huge, -huge, huge, -huge};
-  const auto add = [&](double u, double v) {
-    box.u_min = std::min(box.u_min, u);
-    box.u_max = std::max(box.u_max, u);
-    box.v_min = std::min(box.v_min, v);
-    box.v_max = std::max(box.v_max, v);
-  };
+// The box of the face's parameter curves; void when there is none.
+Bnd_Box2d curve_box(const FaceRecord& face) {
+  Bnd_Box2d box;
   for (const FaceLoop& loop : face.loops) {
     for (const EdgeUse& use : loop.uses) {
-      if (!use.curve.IsNull()) add(use.start().X(), use.start().Y());
-      if (!use.curve.IsNull()) add(use.finish().X(), use.finish().Y());
+      if (use.curve.IsNull()) continue;
+      BndLib_Add2dCurve::Add(Geom2dAdaptor_Curve(use.curve), use.first, use.last, 0.0, box);
     }
-  }
-  // Curved edges reach farther than their ends.
-  for (const UvBox& b : face.trim.region.boundary) {
-    add(b.u_min, b.v_min);
-    add(b.u_max, b.v_max);
   }
   return box;
 }
@@ -141,7 +131,11 @@ Conversion convert_face(const FaceRecord& face, double diagonal) {
   if (face.surface.geometry.IsNull() || face.loops.empty()) return {{}, "it has no boundary"};
   if (face.shared) return {{}, "it belongs to a part that is used in several places"};
   if (!face.face.Location().IsIdentity()) return {{}, "its part is placed by an assembly"};
-  UvBox box = parameter_box(face);
+  const Bnd_Box2d curves = curve_box(face);
+  if (curves.IsVoid() || curves.IsOpenXmin() || curves.IsOpenXmax())
+    return {{}, "it has no extent"};
+  UvBox box;
+  curves.Get(box.u_min, box.v_min, box.u_max, box.v_max);
   if (!(box.u_max > box.u_min) || !(box.v_max > box.v_min)) return {{}, "it has no extent"};
   const auto plane = Handle(Geom_Plane)::DownCast(face.surface.geometry);
   const auto extrusion = Handle(Geom_SurfaceOfLinearExtrusion)::DownCast(face.surface.geometry);
@@ -150,8 +144,11 @@ Conversion convert_face(const FaceRecord& face, double diagonal) {
     widen(box.v_min, box.v_max);
   }
   Conversion result;
-  if (!plane.IsNull()) result.surface = of_plane(plane, box);
-  if (!extrusion.IsNull()) result.surface = of_extrusion(extrusion, box);
+  try {
+    if (!plane.IsNull()) result.surface = of_plane(plane, box);
+    if (!extrusion.IsNull()) result.surface = of_extrusion(extrusion, box);
+  } catch (const Standard_Failure&) {  // faces too slender for distinct knots
+  }
   if (result.surface.IsNull()) {
     result.refusal = has_circles(face.surface.kind)
                          ? "no B-spline runs along its circles with the same parameters"

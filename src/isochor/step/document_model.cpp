@@ -83,7 +83,6 @@ void integrate(const BrepTable& table, const Document& document, SolidModel& mod
     model.faces[f].flux = integrals.back().flux_about_zero(table.z0);
     model.faces[f].flux_bound = integrals.back().bound_about_zero(table.z0);
   }
-  model.facts.volume = model.facts.volume_bound = model.facts.area = 0.0;
   for (TopExp_Explorer it(document.shape, TopAbs_FACE); it.More(); it.Next()) {
     const auto f = static_cast<size_t>(document.faces.FindIndex(it.Current())) - 1;
     const bool same = it.Current().Orientation() == table.faces[f].face.Orientation();
@@ -120,7 +119,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   model.unit = document.unit.name;
   model.schema = document.schema;
   model.notices = document.notices;
-  model.facts = shape_facts(document);
+  model.facts = shape_facts(document, false);  // integrals follow, face by face
   BrepTable table = brep_table(document.shape, document.faces);
   convert(table, options.convert, document.path);
   for (const EdgeRecord& edge : table.edges) model.edges.push_back(measure_edge(table, edge));

@@ -192,7 +192,7 @@ void collect_labels(const TDF_Label& label, const Handle(XCAFDoc_ColorTool) & co
 
 }  // namespace
 
-ShapeFacts shape_facts(const TopoDS_Shape& shape) {
+ShapeFacts shape_facts(const TopoDS_Shape& shape, bool integrals) {
   ShapeFacts facts;
   const BRepCheck_Analyzer analyser(shape);
   facts.valid = analyser.IsValid();
@@ -203,15 +203,16 @@ ShapeFacts shape_facts(const TopoDS_Shape& shape) {
   for (double gap : gaps.edges) facts.max_edge_gap = std::max(facts.max_edge_gap, gap);
   for (double gap : gaps.vertices) facts.max_vertex_gap = std::max(facts.max_vertex_gap, gap);
   facts.diagonal = diagonal_of(shape);
-  const ShapeIntegrals integrals = integrate_shape(shape);
-  facts.area = integrals.area;
-  facts.volume = integrals.volume;
-  facts.volume_bound = integrals.bound;
+  if (!integrals) return facts;
+  const ShapeIntegrals sums = integrate_shape(shape);
+  facts.area = sums.area;
+  facts.volume = sums.volume;
+  facts.volume_bound = sums.bound;
   return facts;
 }
 
-ShapeFacts shape_facts(const Document& document) {
-  ShapeFacts facts = shape_facts(document.shape);
+ShapeFacts shape_facts(const Document& document, bool integrals) {
+  ShapeFacts facts = shape_facts(document.shape, integrals);
   if (!document.xde.IsNull()) {
     collect_labels(XCAFDoc_DocumentTool::ShapesLabel(document.xde->Main()),
                    XCAFDoc_DocumentTool::ColorTool(document.xde->Main()), facts);

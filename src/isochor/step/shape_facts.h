@@ -12,9 +12,10 @@
 namespace isochor::internal {
 
 // Everything but names and colours. Defects name faces by their number.
-ShapeFacts shape_facts(const TopoDS_Shape& shape);
+// `integrals`: with area and volume, which cost the most.
+ShapeFacts shape_facts(const TopoDS_Shape& shape, bool integrals = true);
 
 // With the names and colours of the document.
-ShapeFacts shape_facts(const Document& document);
+ShapeFacts shape_facts(const Document& document, bool integrals = true);
 
 }  // namespace isochor::internal

@@ -18,9 +18,9 @@ namespace isochor::internal {
 namespace {
 
 constexpr int kSideSamples = 17;
-constexpr int kBoxesPerSpan = 4;
-constexpr int kBoxesPerCurve = 16;
-constexpr int kMaxBoxesPerCurve = 2048;
+constexpr int kBoxesPerCrossing = 4;
+constexpr int kBoxesPerCurve = 32;
+constexpr int kMaxBoxesPerPiece = 2048;
 
 double width(const UvBox& box, bool u) { return u ? box.u_max - box.u_min : box.v_max - box.v_min; }
 
@@ -197,18 +197,20 @@ TrimKind kind_of(const FaceTrim& trim, const std::vector<FaceLoop>& loops) {
   return iso && corners(loops.front()) == 4 ? TrimKind::kIsoBox : TrimKind::kTrimmed;
 }
 
-// How many boxes a piece of pcurve gets: a few per knot span it crosses.
+// How many boxes a smooth piece of a pcurve gets: a few per knot span it crosses, and its share of
+// those for the whole curve.
 int box_count(const EdgeUse& use, double low, double high, const SurfaceBreaks& breaks) {
   const gp_Pnt2d a = use.curve->Value(low);
   const gp_Pnt2d b = use.curve->Value(high);
   const auto crossed = [](const std::vector<double>& at, double from, double to) {
-    const auto [least, most] = std::minmax(from, to);
-    return std::count_if(at.begin(), at.end(),
-                         [lo = least, hi = most](double x) { return lo < x && x < hi; });
+    const auto least = std::upper_bound(at.begin(), at.end(), std::min(from, to));
+    const auto most = std::lower_bound(at.begin(), at.end(), std::max(from, to));
+    return most > least ? static_cast<int>(most - least) : 0;
   };
-  const auto spans = crossed(breaks.u, a.X(), b.X()) + crossed(breaks.v, a.Y(), b.Y()) + 1;
-  return std::min(std::max(static_cast<int>(spans) * kBoxesPerSpan, kBoxesPerCurve),
-                  kMaxBoxesPerCurve);
+  const int knots = crossed(breaks.u, a.X(), b.X()) + crossed(breaks.v, a.Y(), b.Y());
+  const double share = std::abs((high - low) / (use.last - use.first));
+  const int least = static_cast<int>(std::ceil(kBoxesPerCurve * share));
+  return std::min(std::max(kBoxesPerCrossing * knots, least), kMaxBoxesPerPiece);
 }
 
 // The pieces on which a pcurve is smooth.
