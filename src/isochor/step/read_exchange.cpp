@@ -126,9 +126,10 @@ void note_checks(Document& document) {
   int errors = 0;
   for (int k = 1; k <= model->NbEntities(); ++k) errors += model->IsErrorEntity(k) ? 1 : 0;
   if (errors > 0) {
-    document.notices.push_back(std::to_string(errors) + " of " +
-                               std::to_string(model->NbEntities()) +
-                               " entities have errors; parts may be missing");
+    // One file in eight has such entities and is complete; it may also mean damage.
+    document.notices.push_back(
+        std::to_string(errors) + " of " + std::to_string(model->NbEntities()) +
+        " entities break the rules of the format; see that nothing is missing");
   }
   const auto checks = document.session->TransferReader()->LastCheckList();
   std::map<std::string, int> fails, warnings;
