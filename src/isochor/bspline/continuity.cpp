@@ -225,6 +225,9 @@ void derive_locks(PatchModel& model) {
     lock_poles(model, q, surface, size, classes, &locks);
   }
   for (const LockedSide& side : model.locked_sides) lock_side(model, side, &locks);
+  for (const auto& [point, reason] : model.fixed_points) {
+    locks.lock(point, locks.reason(reason, false));
+  }
   for (const Join& join : model.joins) {
     if (is_wrap(model, join, classes)) {
       lock_wrap(model, join, &locks);

@@ -22,6 +22,7 @@ namespace isochor {
 
 // Replaces model.locks and model.lock_reasons. Uses model.joins as they are (the reader fills them,
 // or find_joins). What is locked:
+//  - fixed points: as the reader said;
 //  - trim: functions whose support is not wholly inside (trims.h);
 //  - locked sides: the boundary row; further rows by their smoothness (continuity);
 //  - joins that do not match: the boundary rows of both sides; smooth joins, matching or not: rows

@@ -313,6 +313,7 @@ PatchModel without_unused_points(const PatchModel& model) {
   result.points.clear();
   result.ties.clear();
   result.locks.clear();
+  result.fixed_points.clear();
   std::vector<int> first_of_class(classes.representative.size(), -1);
   for (size_t i = 0; i < renumbered.size(); ++i) {
     if (renumbered[i] < 0) continue;
@@ -324,6 +325,10 @@ PatchModel without_unused_points(const PatchModel& model) {
     } else {
       result.ties.emplace_back(first, renumbered[i]);
     }
+  }
+  for (const auto& [point, reason] : model.fixed_points) {
+    const int id = renumbered[static_cast<size_t>(point)];
+    if (id >= 0) result.fixed_points.emplace_back(id, reason);
   }
   for (Patch& patch : result.patches) {
     for (int& id : patch.points) id = renumbered[static_cast<size_t>(id)];

@@ -105,6 +105,8 @@ struct PatchModel {
   std::vector<std::pair<int, int>> ties;  // pairs of points that share one displacement
   std::vector<Join> joins;
   std::vector<LockedSide> locked_sides;
+  // Points that the reader knows must not move, with the reason; derived locks come on top.
+  std::vector<std::pair<int, std::string>> fixed_points;
   std::vector<LockReason> lock_reasons;
   std::vector<Lock> locks;
 

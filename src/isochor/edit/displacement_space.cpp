@@ -9,6 +9,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
+#include "isochor/bspline/joins.h"
 #include "isochor/edit/mirror.h"
 #include "isochor/edit/names.h"
 
@@ -21,8 +22,26 @@ constexpr unsigned kAllAxes = 7;
 // roundings of knot insertion in the two directions, for degrees to 25.
 constexpr double kSameRow = 1e-12;
 
+std::vector<PatchScale> scales_of(const PatchModel& model, const Scale& scale) {
+  switch (scale.kind) {
+    case Scale::Kind::kFinest:
+      return finest_scale(model);
+    case Scale::Kind::kEvery:
+      return keep_every(model, scale.every);
+    case Scale::Kind::kKnots:
+      break;
+  }
+  std::vector<KeptKnots> kept;
+  for (const auto& [name, lists] : scale.knots) {
+    kept.push_back({find_patch(model, name), lists[0], lists[1]});
+  }
+  return keep_knots(model, kept);
+}
+
+}  // namespace
+
 // Disjoint sets of grid entries.
-class EntrySets {
+class DisplacementSpace::EntrySets {
  public:
   explicit EntrySets(int count) : parent_(static_cast<size_t>(count)) {
     std::iota(parent_.begin(), parent_.end(), 0);
@@ -44,24 +63,6 @@ class EntrySets {
  private:
   std::vector<int> parent_;
 };
-
-std::vector<PatchScale> scales_of(const PatchModel& model, const Scale& scale) {
-  switch (scale.kind) {
-    case Scale::Kind::kFinest:
-      return finest_scale(model);
-    case Scale::Kind::kEvery:
-      return keep_every(model, scale.every);
-    case Scale::Kind::kKnots:
-      break;
-  }
-  std::vector<KeptKnots> kept;
-  for (const auto& [name, lists] : scale.knots) {
-    kept.push_back({find_patch(model, name), lists[0], lists[1]});
-  }
-  return keep_knots(model, kept);
-}
-
-}  // namespace
 
 DisplacementSpace::DisplacementSpace(const PatchModel& model, const Options& options) {
   class_of_point_ = point_classes(model).class_of;
@@ -106,6 +107,22 @@ void DisplacementSpace::make_grids(const PatchModel& model, const Scale& scale) 
   entries_.resize(static_cast<size_t>(offset));
 }
 
+// The seam of a periodic direction: row i is row i + n - k, for the k rows that wrap.
+void DisplacementSpace::tie_wrap(const SideRef& ref, EntrySets& sets) {
+  const Grid& grid = grids_[static_cast<size_t>(ref.patch)];
+  const bool along_u = is_u_side(ref.side);
+  const KnotVector& across = along_u ? grid.u.coarse : grid.v.coarse;
+  const int others = along_u ? grid.v.coarse.size() : grid.u.coarse.size();
+  const int wrapped = wrapped_poles(across);
+  for (int i = 0; i < wrapped; ++i) {
+    const int image = i + across.size() - wrapped;
+    for (int j = 0; j < others; ++j) {
+      sets.merge(along_u ? entry_index(ref.patch, i, j) : entry_index(ref.patch, j, i),
+                 along_u ? entry_index(ref.patch, image, j) : entry_index(ref.patch, j, image));
+    }
+  }
+}
+
 // Ties coarse entries wherever the fine points they copy are tied: a fine grid row that is a unit
 // row stands for its coarse coefficient. Boundary rows of joined sides are tied along the join.
 void DisplacementSpace::tie_entries(const PatchModel& model) {
@@ -145,8 +162,13 @@ void DisplacementSpace::tie_entries(const PatchModel& model) {
     }
     return side;
   };
+  const PointClasses point_classes_of_model = point_classes(model);
   for (const Join& join : model.joins) {
     if (!join.matching) continue;
+    if (is_wrap(model, join, point_classes_of_model)) {
+      tie_wrap(join.a, sets);
+      continue;
+    }
     const std::vector<int> a = coarse_side(join.a);
     std::vector<int> b = coarse_side(join.b);
     if (a.size() != b.size()) continue;  // check_ties locks what this leaves untied

@@ -87,7 +87,9 @@ class DisplacementSpace {
     unsigned flipped = 0;  // bit a: axis a changes sign
   };
 
+  class EntrySets;
   int entry_index(int q, int i, int j) const;
+  void tie_wrap(const SideRef& ref, EntrySets& sets);
   void make_grids(const PatchModel& model, const Scale& scale);
   void tie_entries(const PatchModel& model);
   void make_rows(const PatchModel& model);

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "isochor/base/tolerance.h"
+#include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/refinement.h"
 
@@ -325,7 +326,9 @@ void Builder::judge_corner(int vertex, const PointClasses& classes) {
     if (std::all_of(points.begin(), points.end(), one_class)) return;
     reason = "a corner where faces meet that do not move together";
   }
-  for (int point : std::set<int>(support.begin(), support.end())) model_.lock(point, reason, false);
+  for (int point : std::set<int>(support.begin(), support.end())) {
+    model_.fixed_points.emplace_back(point, reason);
+  }
 }
 
 void Builder::relate_corners() {
@@ -340,6 +343,7 @@ PatchModel Builder::build() {
   tie_collapsed_sides();
   for (size_t e = 0; e < table_.edges.size(); ++e) relate_edge(e);
   relate_corners();
+  derive_locks(model_);
   return std::move(model_);
 }
 

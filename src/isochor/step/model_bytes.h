@@ -41,7 +41,8 @@ void transfer(Io& io, LockReason& f) {
 }
 template <typename Io>
 void transfer(Io& io, PatchModel& f) {
-  io(f.unit, f.points, f.patches, f.ties, f.joins, f.locked_sides, f.lock_reasons, f.locks);
+  io(f.unit, f.points, f.patches, f.ties, f.joins, f.locked_sides, f.fixed_points, f.lock_reasons,
+     f.locks);
 }
 template <typename Io>
 void transfer(Io& io, FaceFacts& f) {

@@ -1,0 +1,142 @@
+#include <cstdio>
+#include <set>
+
+#include "commands.h"
+#include "edit_output.h"
+#include "isochor/base/error.h"
+#include "isochor/io/edits_json.h"
+#include "isochor/io/file.h"
+#include "isochor/io/report_json.h"
+#include "model_picture.h"
+#include "model_source.h"
+#include "terminal.h"
+
+namespace isochor::app {
+namespace {
+
+// All patches that a script names: faces that are not B-spline yet are converted for it.
+std::vector<std::string> named_patches(const EditScript& script) {
+  std::set<std::string> names;
+  const auto add_extent = [&](const Extent& extent) {
+    names.insert(extent.patch);
+    names.insert(extent.faces.begin(), extent.faces.end());
+    for (const auto& item : extent.poles) names.insert(item.first);
+  };
+  for (const Edit& edit : script.edits) {
+    for (const Move& move : edit.moves) names.insert(move.place.patch);
+    for (const Hold& hold : edit.holds) {
+      if (hold.kind == Hold::Kind::kPlace) names.insert(hold.place.patch);
+    }
+    add_extent(edit.extent);
+    if (edit.sink.kind == Sink::Kind::kOtherExtent) add_extent(edit.sink.extent);
+    for (const auto& item : edit.scale.knots) names.insert(item.first);
+  }
+  names.erase("");
+  return {names.begin(), names.end()};
+}
+
+EditScript read_script(const std::string& path) {
+  EditScript script = parse_edits(read_file(path), path);
+  if (script.edits.empty()) throw InputError(path, "edits", "the list is empty: nothing to do");
+  return script;
+}
+
+std::vector<Certificate> apply_all(const EditScript& script, EditSession& session,
+                                   const std::string& edits_path) {
+  std::vector<Certificate> certificates;
+  for (size_t k = 0; k < script.edits.size(); ++k) {
+    try {
+      certificates.push_back(session.apply(script.edits[k]));
+    } catch (const InputError& error) {
+      const std::string where = "edits[" + std::to_string(k) + "]";
+      throw InputError(edits_path, error.entity().empty() ? where : where + ": " + error.entity(),
+                       error.reason());
+    }
+    if (certificates.back().outcome != Outcome::kDone) break;
+  }
+  return certificates;
+}
+
+void print_certificate(const Certificate& c, const std::string& unit, const Common& common) {
+  print(common, format("edit \"%s\": %s", c.name.c_str(), std::string(name_of(c.outcome)).c_str()));
+  if (c.outcome != Outcome::kDone) {
+    print(common, "  " + c.reason);
+    return;
+  }
+  print(common, format("  volume before    %.15g %s^3", c.volume.before, unit.c_str()));
+  print(common, format("  volume after     %.15g %s^3", c.volume.after, unit.c_str()));
+  print(common,
+        format("  relative change  %.3g (bound %.2g)", c.volume.relative_change, c.volume.bound));
+  for (const MoveRecord& move : c.moves) {
+    print(common,
+          format("  moved            %s by (%.6g, %.6g, %.6g), error %.2g %s", move.place.c_str(),
+                 move.got.x(), move.got.y(), move.got.z(), move.error, unit.c_str()));
+  }
+  if (c.joins.count > 0) {
+    print(common, format("  largest gap      %.3g %s at %d joins", c.joins.max_gap, unit.c_str(),
+                         c.joins.count));
+  }
+  print(common, format("  freedom used     %d coefficients in the extent, %d equations, %d left",
+                       c.coefficients, c.rank, c.freedom_left));
+  print(common, format("  moved poles      %d, at most by %.4g %s", c.poles_moved, c.max_distance,
+                       unit.c_str()));
+  for (const LockRecord& lock : c.locked) {
+    detail(common, format("locked in the extent: %d coefficients of %s: %s", lock.coefficients,
+                          lock.patch.c_str(), lock.reason.c_str()));
+  }
+}
+
+}  // namespace
+
+int run_edit(const EditOptions& options, const Common& common) {
+  const EditScript script = read_script(options.edits);
+  const std::vector<std::string> named = named_patches(script);
+  const LoadedModel loaded = load_model(
+      options.model, common, is_cad_file(options.model) ? named : std::vector<std::string>());
+  if (loaded.patches.patches.empty()) {
+    throw InputError(options.model, "",
+                     "no face can be edited as it is; name a face that can be converted "
+                     "(see isochor info)");
+  }
+  EditSession session(loaded.patches, loaded.surroundings);
+  const std::vector<Certificate> certificates = apply_all(script, session, options.edits);
+  Outcome outcome = overall_outcome(certificates);
+
+  WrittenModel written;
+  Value::Object extra = {{"model", Value(options.model)}, {"edits_file", Value(options.edits)}};
+  if (outcome == Outcome::kDone) {
+    written = write_edited_model(loaded, session, options.output, named, common);
+    extra.insert(extra.end(), written.report.begin(), written.report.end());
+    if (written.written) {
+      extra.emplace_back("output", options.output);
+      if (!options.picture.empty()) {
+        write_edit_picture(loaded, session, certificates, options.picture, common);
+        extra.emplace_back("picture", options.picture);
+      }
+    } else {
+      outcome = Outcome::kRefused;
+      extra.emplace_back("refusal", written.refusal);
+    }
+  }
+  const std::string report = format_report(certificates, outcome, extra);
+  if (!options.report.empty()) write_file(options.report, report);
+  if (common.json) std::fputs(report.c_str(), stdout);
+
+  for (const Certificate& certificate : certificates) {
+    print_certificate(certificate, loaded.patches.unit, common);
+  }
+  for (const std::string& line : written.lines) print(common, line);
+  if (outcome != Outcome::kDone) {
+    const Certificate& last = certificates.back();
+    note(common, options.model + ": " + std::string(name_of(outcome)) + ": " +
+                     (written.refusal.empty() ? last.reason : written.refusal));
+    if (!options.report.empty()) print(common, "report:  " + options.report);
+    return kExitNo;
+  }
+  print(common, "model:   " + options.output);
+  if (!options.report.empty()) print(common, "report:  " + options.report);
+  if (!options.picture.empty()) print(common, "picture: " + options.picture);
+  return kExitDone;
+}
+
+}  // namespace isochor::app

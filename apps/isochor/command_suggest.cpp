@@ -1,0 +1,64 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "commands.h"
+#include "isochor/edit/suggestion.h"
+#include "isochor/io/edits_json.h"
+#include "isochor/io/file.h"
+#include "model_source.h"
+#include "terminal.h"
+
+namespace isochor::app {
+namespace {
+
+// When nothing is editable as it is: the faces that can be converted, from the largest.
+std::vector<std::string> convertible_faces(const LoadedModel& loaded) {
+  std::vector<std::string> handles;
+#ifdef ISOCHOR_WITH_OCCT
+  if (!loaded.solid) return handles;
+  std::vector<const FaceFacts*> faces;
+  for (const FaceFacts& face : loaded.solid->faces) {
+    if (face.patch < 0 && face.convertible) faces.push_back(&face);
+  }
+  std::stable_sort(faces.begin(), faces.end(),
+                   [](const FaceFacts* a, const FaceFacts* b) { return a->area > b->area; });
+  for (const FaceFacts* face : faces) handles.push_back(face->handle);
+#else
+  (void)loaded;
+#endif
+  return handles;
+}
+
+}  // namespace
+
+int run_suggest(const SuggestOptions& options, const Common& common) {
+  LoadedModel loaded = load_model(options.model, common);
+  std::optional<Edit> edit;
+  if (!loaded.patches.patches.empty()) edit = suggest_edit(loaded.patches, loaded.surroundings);
+  constexpr size_t kMostConversions = 4;
+  const std::vector<std::string> candidates = convertible_faces(loaded);
+  for (size_t k = 0; !edit && k < candidates.size() && k < kMostConversions; ++k) {
+    const LoadedModel converted = load_model(options.model, common, {candidates[k]});
+    if (!converted.patches.patches.empty()) {
+      edit = suggest_edit(converted.patches, converted.surroundings);
+    }
+  }
+  if (!edit) {
+    note(common, options.model +
+                     ": refused: no face has a place that is free enough, even refined; isochor "
+                     "info lists what holds each face");
+    print_json(common, Value::object().set("outcome", "refused"));
+    return kExitNo;
+  }
+  const std::string text = format_edits({{*edit}});
+  if (options.output.empty()) {
+    std::fputs(text.c_str(), stdout);
+    return kExitDone;
+  }
+  write_file(options.output, text);
+  print(common, "edits: " + options.output);
+  print_json(common, Value::object().set("outcome", "done").set("edits", options.output));
+  return kExitDone;
+}
+
+}  // namespace isochor::app

@@ -1,0 +1,66 @@
+#include "commands.h"
+#include "isochor/base/error.h"
+#include "isochor/io/file.h"
+#include "isochor/volume/exact_volume.h"
+#include "isochor/volume/volume_form.h"
+#include "model_source.h"
+#include "terminal.h"
+
+namespace isochor::app {
+namespace {
+
+// The rational volume when every face is a whole polynomial patch; else an InputError that says
+// which face is in the way.
+std::string exact_text(const LoadedModel& loaded) {
+#ifdef ISOCHOR_WITH_OCCT
+  if (loaded.solid) {
+    for (const FaceFacts& face : loaded.solid->faces) {
+      if (face.patch >= 0 && face.trim == TrimKind::kNatural && !face.rational) continue;
+      throw InputError(loaded.path, face.handle,
+                       "is no whole polynomial B-spline face (" + face.surface +
+                           "), so the volume is not known to be rational; omit --exact");
+    }
+  }
+#endif
+  return ExactVolume(loaded.patches).value(loaded.patches.points).to_string();
+}
+
+}  // namespace
+
+int run_volume(const VolumeOptions& options, const Common& common) {
+  const LoadedModel loaded = load_model(options.model, common);
+  if (!loaded.surroundings.closed && !options.open) {
+    note(common, options.model + ": the model is open (" + loaded.surroundings.why_open +
+                     ") and encloses no volume; --open prints the integral of z dx dy");
+    print_json(common, Value::object()
+                           .set("outcome", "refused")
+                           .set("reason", "open: " + loaded.surroundings.why_open));
+    return kExitNo;
+  }
+  Value result = Value::object().set("volume", loaded.volume).set("bound", loaded.volume_bound);
+  print(common, format("%.17g (error at most %.2g)", loaded.volume, loaded.volume_bound));
+  if (options.exact) {
+    std::string exact;
+    try {
+      exact = exact_text(loaded);
+    } catch (const InputError& error) {
+      throw error.in_file(options.model);
+    }
+    print(common, "exact: " + exact);
+    result.set("exact", exact);
+  } else {
+    result.set("exact", Value());
+  }
+  if (!options.gradient.empty()) {
+    Value rows = Value::list();
+    for (const Vec3& row : VolumeForm(loaded.patches).gradient(loaded.patches.points)) {
+      rows.push(row);
+    }
+    write_file(options.gradient, to_json(rows, -1));
+    print(common, "gradient: " + options.gradient);
+  }
+  print_json(common, result);
+  return kExitDone;
+}
+
+}  // namespace isochor::app

@@ -1,0 +1,62 @@
+// The commands of the program. Each takes its parsed options and returns an exit code:
+// 0 done; 1 an honest no; 2 usage; 3 bad input (thrown as InputError); 4 our bug; 130 cancelled.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace isochor::app {
+
+enum ExitCode { kExitDone = 0, kExitNo = 1, kExitUsage = 2, kExitInput = 3, kExitBug = 4 };
+
+// Options that every command has.
+struct Common {
+  bool json = false;  // one JSON value on stdout, nothing else there
+  bool quiet = false;
+  bool verbose = false;
+  int threads = 1;  // results do not depend on it
+  std::string progress = "auto";
+  double bridge_seconds = 300.0;  // limits of the child process that reads and writes CAD files
+  double bridge_megabytes = 8192.0;
+};
+
+struct InfoOptions {
+  std::string model;
+};
+int run_info(const InfoOptions& options, const Common& common);
+
+struct VolumeOptions {
+  std::string model;
+  bool exact = false;
+  bool open = false;
+  std::string gradient;  // file to write
+};
+int run_volume(const VolumeOptions& options, const Common& common);
+
+struct SuggestOptions {
+  std::string model;
+  std::string output;
+};
+int run_suggest(const SuggestOptions& options, const Common& common);
+
+struct EditOptions {
+  std::string model, edits, output, report, picture;
+};
+int run_edit(const EditOptions& options, const Common& common);
+
+struct CheckOptions {
+  std::string model, against;
+};
+int run_check(const CheckOptions& options, const Common& common);
+
+struct ConvertOptions {
+  std::string input, output;
+};
+int run_convert(const ConvertOptions& options, const Common& common);
+
+struct RenderOptions {
+  std::string model, output, compare;
+};
+int run_render(const RenderOptions& options, const Common& common);
+
+}  // namespace isochor::app

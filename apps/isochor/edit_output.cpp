@@ -1,0 +1,101 @@
+#include "edit_output.h"
+
+#include "isochor/base/error.h"
+#include "isochor/io/file.h"
+#include "isochor/io/model_json.h"
+#include "terminal.h"
+
+namespace isochor::app {
+namespace {
+
+#ifdef ISOCHOR_WITH_OCCT
+
+Value facts_value(const ShapeFacts& facts) {
+  return Value::object()
+      .set("valid", facts.valid)
+      .set("defects", facts.defects)
+      .set("closed", facts.closed)
+      .set("solids", facts.solids)
+      .set("max_tolerance", facts.max_tolerance)
+      .set("max_edge_gap", facts.max_edge_gap)
+      .set("max_vertex_gap", facts.max_vertex_gap)
+      .set("area", facts.area)
+      .set("volume", facts.volume)
+      .set("volume_bound", facts.volume_bound);
+}
+
+WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
+                         const std::string& output, const std::vector<std::string>& converted,
+                         const Common& common) {
+  const SolidModel& solid = *before.solid;
+  std::vector<EditedFace> faces;
+  for (size_t q = 0; q < session.changes().size(); ++q) {
+    const PatchChange& change = session.changes()[q];
+    if (!change.moved) continue;
+    for (size_t f = 0; f < solid.faces.size(); ++f) {
+      if (solid.faces[f].patch != static_cast<int>(q)) continue;
+      faces.push_back(
+          {static_cast<int>(f), session.model().surface(static_cast<int>(q)), change.sides});
+    }
+  }
+  ReadOptions options = read_options(common);
+  for (const std::string& name : converted) {
+    const int face = find_face(solid, name);
+    if (!solid.faces[static_cast<size_t>(face)].bspline) options.convert.push_back(face);
+  }
+  const WriteReport report = write_edited(before.path, options, faces, output);
+  WrittenModel result;
+  result.written = report.written;
+  result.refusal = report.refusal;
+  const double growth = report.reread.max_tolerance > report.before.max_tolerance
+                            ? report.reread.max_tolerance - report.before.max_tolerance
+                            : 0.0;
+  result.report.emplace_back("check",
+                             Value::object()
+                                 .set("before", facts_value(report.before))
+                                 .set("rebuilt", facts_value(report.rebuilt))
+                                 .set("reread", facts_value(report.reread))
+                                 .set("tolerance_growth", growth)
+                                 .set("untouched_bspline_faces", report.faces_bspline_untouched)
+                                 .set("untouched_bspline_faces_identical", report.faces_identical)
+                                 .set("analytic_faces_ulps", report.analytic_ulps)
+                                 .set("edited_faces", static_cast<long>(faces.size()))
+                                 .set("edited_faces_exact", report.edited_exact)
+                                 .set("notices", report.notices));
+  result.lines.push_back(
+      format("check: %s, largest edge gap %.3g (before %.3g), largest tolerance %.3g (before %.3g)",
+             report.reread.valid ? "valid" : "not valid", report.reread.max_edge_gap,
+             report.before.max_edge_gap, report.reread.max_tolerance, report.before.max_tolerance));
+  result.lines.push_back(format("untouched B-spline faces bit-identical after re-reading: %d of %d",
+                                report.faces_identical, report.faces_bspline_untouched));
+  return result;
+}
+
+#endif
+
+}  // namespace
+
+WrittenModel write_edited_model(const LoadedModel& before, const EditSession& session,
+                                const std::string& output,
+                                const std::vector<std::string>& converted, const Common& common) {
+  WrittenModel result;
+  const bool json = extension_of(output) == "isochor.json";
+#ifdef ISOCHOR_WITH_OCCT
+  if (before.solid && is_cad_file(output)) {
+    return write_solid(before, session, output, converted, common);
+  }
+#else
+  (void)converted;
+  (void)common;
+#endif
+  if (json) {
+    write_file(output, format_model(session.model()));
+    result.written = true;
+    return result;
+  }
+  throw InputError(output, "",
+                   "cannot write this format here; a STEP, IGES or BREP model is written to one "
+                   "of these formats, an .isochor.json model to .isochor.json (use convert then)");
+}
+
+}  // namespace isochor::app

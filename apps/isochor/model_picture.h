@@ -1,0 +1,25 @@
+// Pictures of models: what `edit --picture` and `render` write.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "isochor/edit/edit_session.h"
+#include "isochor/io/mesh.h"
+#include "model_source.h"
+
+namespace isochor::app {
+
+// Before, after and signed displacement side by side, in a PNG file.
+void write_edit_picture(const LoadedModel& before, const EditSession& session,
+                        const std::vector<Certificate>& certificates, const std::string& path,
+                        const Common& common);
+
+// Triangles and borders of a whole model, also of faces that are no patches.
+struct ModelMesh {
+  Mesh mesh;
+  std::vector<LineSet> lines;
+};
+ModelMesh mesh_of(const LoadedModel& model, const Common& common);
+
+}  // namespace isochor::app

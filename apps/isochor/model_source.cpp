@@ -1,0 +1,142 @@
+#include "model_source.h"
+
+#include <algorithm>
+
+#include "isochor/base/error.h"
+#include "isochor/bspline/joins.h"
+#include "isochor/io/file.h"
+#include "isochor/io/model_json.h"
+#include "isochor/volume/volume_form.h"
+#include "terminal.h"
+
+namespace isochor::app {
+namespace {
+
+LoadedModel load_json(const std::string& path) {
+  LoadedModel loaded;
+  loaded.path = path;
+  loaded.patches = parse_model(read_file(path), path);
+  const Closure closed = closure(loaded.patches);
+  loaded.surroundings.closed = closed.closed;
+  if (!closed.closed) {
+    const auto& sides = !closed.open_sides.empty()       ? closed.open_sides
+                        : !closed.overused_sides.empty() ? closed.overused_sides
+                                                         : closed.misoriented_sides;
+    loaded.surroundings.why_open = sides.empty() ? "its sides do not close up" : sides.front();
+    if (sides.size() > 1) {
+      loaded.surroundings.why_open += " and " + std::to_string(sides.size() - 1) + " more";
+    }
+  }
+  const VolumeForm form(loaded.patches);
+  const Bounded volume = form.bounded_value(loaded.patches.points);
+  loaded.volume = volume.value;
+  loaded.volume_bound = volume.bound;
+  return loaded;
+}
+
+#ifdef ISOCHOR_WITH_OCCT
+LoadedModel from_solid(SolidModel solid) {
+  LoadedModel loaded;
+  loaded.path = solid.path;
+  loaded.patches = solid.patches;
+  loaded.volume = solid.facts.volume;
+  loaded.volume_bound = solid.facts.volume_bound;
+  loaded.surroundings.closed = solid.facts.closed;
+  if (!solid.facts.closed) {
+    loaded.surroundings.why_open = std::to_string(solid.facts.free_edges) + " free edges, " +
+                                   std::to_string(solid.facts.multiple_edges) +
+                                   " edges of more than two faces";
+  }
+  const double whole_patches = VolumeForm(loaded.patches).value(loaded.patches.points);
+  loaded.surroundings.outside_volume = loaded.volume - whole_patches;
+  loaded.surroundings.outside_bound = solid.facts.volume_bound;
+  loaded.solid = std::move(solid);
+  return loaded;
+}
+#endif
+
+}  // namespace
+
+bool is_cad_file(const std::string& path) {
+  const std::string extension = extension_of(path);
+  for (const char* known : {"step", "stp", "p21", "iges", "igs", "brep", "brp"}) {
+    if (extension == known) return true;
+  }
+  return false;
+}
+
+#ifdef ISOCHOR_WITH_OCCT
+
+ReadOptions read_options(const Common& common) {
+  ReadOptions options;
+  options.limits.seconds = common.bridge_seconds;
+  options.limits.megabytes = common.bridge_megabytes;
+  return options;
+}
+
+int find_face(const SolidModel& solid, const std::string& name) {
+  std::vector<int> found;
+  for (size_t f = 0; f < solid.faces.size(); ++f) {
+    const FaceFacts& face = solid.faces[f];
+    if (face.handle == name) return static_cast<int>(f);
+    const bool alias =
+        std::find(face.aliases.begin(), face.aliases.end(), name) != face.aliases.end();
+    if (face.name == name || alias) found.push_back(static_cast<int>(f));
+  }
+  if (found.size() == 1) return found.front();
+  constexpr size_t kMostListed = 12;
+  std::string listed;
+  size_t count = 0;
+  for (size_t f = 0; f < solid.faces.size() && count <= kMostListed; ++f) {
+    const FaceFacts& face = solid.faces[f];
+    if (!found.empty() && face.name != name) continue;
+    if (++count > kMostListed) {
+      listed += ", ...";
+      break;
+    }
+    listed += (listed.empty() ? "" : ", ") + face.handle;
+    if (!face.name.empty()) listed += " (\"" + face.name + "\")";
+  }
+  if (found.empty()) {
+    throw InputError(solid.path, "face \"" + name + "\"", "no such face; there are: " + listed);
+  }
+  throw InputError(solid.path, "face \"" + name + "\"",
+                   "the name is ambiguous, use one of: " + listed);
+}
+
+#endif
+
+LoadedModel load_model(const std::string& path, const Common& common,
+                       const std::vector<std::string>& convert) {
+  if (extension_of(path) == "isochor.json") return load_json(path);
+  if (!is_cad_file(path)) {
+    read_file(path);  // a missing file is the better message
+    throw InputError(path, "",
+                     "unknown model format; known are .step .stp .iges .igs .brep .isochor.json");
+  }
+#ifdef ISOCHOR_WITH_OCCT
+  ReadOptions options = read_options(common);
+  SolidModel solid = read_solid(path, options);
+  for (const std::string& name : convert) {
+    const int face = find_face(solid, name);
+    const FaceFacts& facts = solid.faces[static_cast<size_t>(face)];
+    if (facts.patch >= 0) continue;
+    if (!facts.convertible) {
+      throw InputError(path, facts.handle + (facts.name.empty() ? "" : " (\"" + facts.name + "\")"),
+                       "cannot be edited: " + facts.not_editable);
+    }
+    if (std::find(options.convert.begin(), options.convert.end(), face) == options.convert.end()) {
+      options.convert.push_back(face);
+    }
+  }
+  if (!options.convert.empty()) solid = read_solid(path, options);
+  for (const std::string& notice : solid.notices) detail(common, path + ": " + notice);
+  return from_solid(std::move(solid));
+#else
+  (void)common;
+  (void)convert;
+  throw InputError(path, "", "this build has no STEP, IGES and BREP support");
+#endif
+}
+
+}  // namespace isochor::app

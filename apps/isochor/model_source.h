@@ -1,0 +1,43 @@
+// Models from files of any format, and back.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "commands.h"
+#include "isochor/bspline/patch_model.h"
+#include "isochor/edit/edit_session.h"
+#ifdef ISOCHOR_WITH_OCCT
+#include "isochor/step/solid_model.h"
+#endif
+
+namespace isochor::app {
+
+// A model as read: always patches and what surrounds them; for CAD files also the solid's facts.
+struct LoadedModel {
+  std::string path;
+  PatchModel patches;
+  Surroundings surroundings;
+  double volume = 0.0;  // total, signed
+  double volume_bound = 0.0;
+#ifdef ISOCHOR_WITH_OCCT
+  std::optional<SolidModel> solid;
+#endif
+};
+
+// True for STEP, IGES and BREP by extension.
+bool is_cad_file(const std::string& path);
+
+// Reads a model. `convert`: names of faces to turn into B-spline patches when they are not.
+// Throws InputError for anything that cannot be used, also for an unknown extension.
+LoadedModel load_model(const std::string& path, const Common& common,
+                       const std::vector<std::string>& convert = {});
+
+#ifdef ISOCHOR_WITH_OCCT
+ReadOptions read_options(const Common& common);
+// 0-based index of the face called `name`. Throws InputError (unknown, ambiguous).
+int find_face(const SolidModel& solid, const std::string& name);
+#endif
+
+}  // namespace isochor::app
