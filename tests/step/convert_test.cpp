@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
@@ -57,6 +58,22 @@ TEST(Convert, WhatAFormatCannotCarryIsSaid) {
   const auto step = convert_file(folder.file("pair.brep"), folder.file("again.step"));
   ASSERT_TRUE(step.written) << step.refusal;
   EXPECT_THAT(step.notices, Contains(HasSubstr("states no length unit")));
+}
+
+TEST(Convert, UnitsThatCannotBeWrittenAreRefused) {
+  const TempFolder folder;
+  auto cube = shapes::document_of(shapes::bicubic_cube(), "inch");
+  write_document(cube, folder.file("inch.step"));
+  std::ifstream in(folder.file("inch.step"));
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  const size_t at = text.find("2.5399999999999999E+01");
+  ASSERT_NE(at, std::string::npos);
+  folder.write("odd.step", text.replace(at, 22, "7.5E+00"));
+  const auto step = convert_file(folder.file("odd.step"), folder.file("out.step"));
+  EXPECT_THAT(step.refusal, HasSubstr("length unit of 7.5 mm"));
+  const auto brep = convert_file(folder.file("odd.step"), folder.file("out.brep"));
+  EXPECT_TRUE(brep.written) << brep.refusal;
+  EXPECT_EQ(brep.faces_identical, 6);
 }
 
 TEST(Convert, ErrorsNameTheFile) {

@@ -209,6 +209,21 @@ TEST(Document, JunkBeforeTheStartIsSkippedAndMentioned) {
   EXPECT_THAT(mark.notices, ::testing::Not(Contains(HasSubstr("skipped"))));
 }
 
+// A unit that is a multiple of another by a number of its own.
+TEST(Document, UnitsWithoutANameAreReadUnscaled) {
+  const TempFolder folder;
+  auto cube = shapes::document_of(shapes::bicubic_cube(), "inch");
+  write_document(cube, folder.file("inch.step"));
+  std::string text = text_of(folder.file("inch.step"));
+  const std::string factor = "LENGTH_MEASURE_WITH_UNIT(2.5399999999999999E+01";
+  const size_t at = text.find(factor);
+  ASSERT_NE(at, std::string::npos) << "the conversion factor of the inch";
+  text.replace(at, factor.size(), "LENGTH_MEASURE_WITH_UNIT(7.5E+00");
+  Document odd = load_document(folder.write("odd.step", text));
+  EXPECT_EQ(odd.unit.name, "7.5 mm");
+  EXPECT_EQ(spline_numbers(odd), spline_numbers(cube));
+}
+
 TEST(Document, SchemaAndFormatAreKnown) {
   const TempFolder folder;
   auto cube = shapes::document_of(shapes::bicubic_cube());

@@ -28,9 +28,6 @@ void note_losses(const Document& document, FileFormat output, std::vector<std::s
   if (output != FileFormat::kBrep && !document.unit.stated) {
     notices.push_back("the input states no length unit; written as " + document.unit.name);
   }
-  if (output == FileFormat::kStep && document.unit.occt.empty()) {
-    notices.push_back("a length unit of " + document.unit.name + " is written as mm");
-  }
 }
 
 // Child 1: everything up to the temporary file.
@@ -42,6 +39,11 @@ WriteReport change_and_write(const WriteJob& job, const std::string& path, Write
   report.notices = document.notices;
   report.before = shape_facts(document);
   const TopoDS_Shape old = document.shape;
+  if (format_of(path) != FileFormat::kBrep && document.unit.occt.empty()) {
+    report.refusal = "the length unit of " + document.unit.name +
+                     " cannot be written without rounding; BREP keeps the numbers";
+    return report;
+  }
   if (job.must_be_valid && !report.before.valid) {
     report.refusal = objection_to_rebuilt(report.before, report.before);
     return report;
@@ -75,6 +77,9 @@ WriteReport read_back(const WriteJob& job, const std::string& path, WriteReport 
   report.notices.insert(report.notices.end(), faces.notices.begin(), faces.notices.end());
   report.refusal = objection_to_reread(report.rebuilt, report.reread, labels);
   if (report.refusal.empty()) report.refusal = faces.objection;
+  const std::string growth = tolerance_growth(report.rebuilt, report.reread);
+  if (!growth.empty() && job.edits.empty()) report.notices.push_back(growth);
+  if (report.refusal.empty() && !job.edits.empty()) report.refusal = growth;
   return report;
 }
 

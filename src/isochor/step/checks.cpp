@@ -111,15 +111,17 @@ std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& re
   return "";
 }
 
+std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread) {
+  const std::string text = grew("the largest tolerance", written.max_tolerance,
+                                reread.max_tolerance, kSameTolerance * written.max_tolerance);
+  return text.empty() ? "" : "after reading the file back, " + text;
+}
+
 std::string objection_to_reread(const ShapeFacts& written, const ShapeFacts& reread, bool labels) {
   if (written.valid && !reread.valid) {
     return "the file reads back as an invalid shape" + first_defect(reread);
   }
   std::string text = different_topology(written, reread);
-  if (text.empty()) {
-    text = grew("the largest tolerance", written.max_tolerance, reread.max_tolerance,
-                kSameTolerance * written.max_tolerance);
-  }
   if (text.empty()) {
     text = different_measure("the area", written.area, reread.area, kSameArea * written.area);
   }

@@ -18,7 +18,10 @@ std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& reb
 // its own tolerance, which has not changed.
 std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& rebuilt);
 
-// Compares what was read back with what was written.
+// Says when the largest tolerance is larger than it was; reading a file again may enlarge it.
+std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread);
+
+// Compares what was read back with what was written, tolerances aside.
 std::string objection_to_reread(const ShapeFacts& written, const ShapeFacts& reread, bool labels);
 
 }  // namespace isochor::internal
