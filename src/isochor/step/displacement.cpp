@@ -40,12 +40,19 @@ struct ParameterCurve {
   }
 };
 
+// The knots outside the domain of a wrapped vector follow the insertion.
+BandedMap map_between(const KnotVector& before, const KnotVector& after) {
+  const bool wrapped = before != after && wrapped_poles(before) > 0 && wrapped_poles(after) > 0;
+  return wrapped ? wrapped_insertion_map(before, after) : insertion_map(before, after);
+}
+
 Surface difference_of(const Surface& before, const Surface& after) {
   const bool same = before.u_knots() == after.u_knots() && before.v_knots() == after.v_knots();
   Surface fine = before;
   if (!same) {
     try {
-      fine = refine(before, after.u_knots(), after.v_knots());
+      fine = refine(before, after.u_knots(), map_between(before.u_knots(), after.u_knots()),
+                    after.v_knots(), map_between(before.v_knots(), after.v_knots()));
     } catch (const PreconditionError&) {
       throw InputError("", "", "its new knots are not a refinement of the old ones");
     }
