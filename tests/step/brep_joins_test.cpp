@@ -112,8 +112,8 @@ TEST(BrepJoins, SeamTiesAPatchToItselfAndCapsLockItsOtherSides) {
     }
     // Three rows wrap: 13 of the 10 poles around, on 6 levels.
     EXPECT_EQ(point_classes(r.model).representative.size(), 60u);
-    EXPECT_FALSE(r.model.locks.empty());
-    EXPECT_THAT(r.model.lock_reasons.at(0).text, HasSubstr("a corner shared with face:"));
+    ASSERT_FALSE(r.model.fixed_points.empty());
+    EXPECT_THAT(r.model.fixed_points[0].second, HasSubstr("a corner shared with face:"));
     expect_ties_are_close(r);
   }
 }
@@ -141,7 +141,7 @@ TEST(BrepJoins, TangentPatchesJoinSmoothlyAndOpenSidesStayFree) {
   EXPECT_TRUE(r.model.joins[0].matching);
   EXPECT_EQ(r.model.joins[0].smoothness, Smoothness::kCurvature);
   EXPECT_TRUE(r.model.locked_sides.empty());
-  EXPECT_TRUE(r.model.locks.empty());
+  EXPECT_TRUE(r.model.fixed_points.empty());
   EXPECT_EQ(r.model.ties.size(), 6u);
 }
 
@@ -153,7 +153,7 @@ TEST(BrepJoins, PatchesWithDifferentKnotsLockTheirCommonSide) {
   ASSERT_EQ(r.model.locked_sides.size(), 2u);
   EXPECT_THAT(r.model.locked_sides[0].reason, HasSubstr("does not match side"));
   EXPECT_TRUE(r.model.ties.empty());
-  EXPECT_EQ(r.model.locks.size(), 4u);
+  EXPECT_EQ(r.model.fixed_points.size(), 4u);
 }
 
 TEST(BrepJoins, TwoPatchesAgainstOneLockBothSides) {
@@ -170,8 +170,8 @@ TEST(BrepJoins, TwoPatchesAgainstOneLockBothSides) {
   ASSERT_EQ(r.model.joins.size(), 1u);  // between the two small ones
   // The end of that join lies on the side of the large one.
   bool found = false;
-  for (const LockReason& reason : r.model.lock_reasons) {
-    found = found || reason.text.find("a corner on the boundary of face:") == 0;
+  for (const auto& [point, reason] : r.model.fixed_points) {
+    found = found || reason.find("a corner on the boundary of face:") == 0;
   }
   EXPECT_TRUE(found);
 }

@@ -137,14 +137,6 @@ Builder::SiteSide Builder::side_at(const EdgeSite& site) {
 
 void Builder::lock_side(const SideRef& side, const std::string& reason, Smoothness smoothness) {
   model_.locked_sides.push_back({side, reason, smoothness});
-  const Patch& p = patch(side.patch);
-  // At an unclamped side the boundary depends on as many rows as the degree says.
-  const int rows = support(p, side.side);
-  for (int depth = 0; rows > 1 && depth < rows; ++depth) {
-    for (const auto& [i, j] : side_indices(p, side.side, depth)) {
-      model_.lock(p.point(i, j), "the side " + reason, false);
-    }
-  }
 }
 
 // The seam of a periodic direction: pole rows i and i + N are the same rows.
