@@ -105,7 +105,7 @@ int run_edit(const EditOptions& options, const Common& common) {
   WrittenModel written;
   Value::Object extra = {{"model", Value(options.model)}, {"edits_file", Value(options.edits)}};
   if (outcome == Outcome::kDone) {
-    written = write_edited_model(loaded, session, options.output, named, common);
+    written = write_edited_model(loaded, session, options.output, common);
     extra.insert(extra.end(), written.report.begin(), written.report.end());
     if (written.written) {
       extra.emplace_back("output", options.output);

@@ -25,8 +25,7 @@ Value facts_value(const ShapeFacts& facts) {
 }
 
 WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
-                         const std::string& output, const std::vector<std::string>& converted,
-                         const Common& common) {
+                         const std::string& output, const Common& common) {
   const SolidModel& solid = *before.solid;
   std::vector<EditedFace> faces;
   for (size_t q = 0; q < session.changes().size(); ++q) {
@@ -39,10 +38,7 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
     }
   }
   ReadOptions options = read_options(common);
-  for (const std::string& name : converted) {
-    const int face = find_face(solid, name);
-    if (!solid.faces[static_cast<size_t>(face)].bspline) options.convert.push_back(face);
-  }
+  options.convert = before.converted;
   const WriteReport report = write_edited(before.path, options, faces, output);
   WrittenModel result;
   result.written = report.written;
@@ -76,16 +72,14 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
 }  // namespace
 
 WrittenModel write_edited_model(const LoadedModel& before, const EditSession& session,
-                                const std::string& output,
-                                const std::vector<std::string>& converted, const Common& common) {
+                                const std::string& output, const Common& common) {
   WrittenModel result;
   const bool json = extension_of(output) == "isochor.json";
 #ifdef ISOCHOR_WITH_OCCT
   if (before.solid && is_cad_file(output)) {
-    return write_solid(before, session, output, converted, common);
+    return write_solid(before, session, output, common);
   }
 #else
-  (void)converted;
   (void)common;
 #endif
   if (json) {

@@ -18,10 +18,9 @@ struct WrittenModel {
   std::vector<std::string> lines;  // for people
 };
 
-// Writes the session's model to `output`, complete or not at all. `converted` names the faces that
-// were converted when the model was loaded. Throws InputError when the file cannot be written.
+// Writes the session's model to `output`, complete or not at all.
+// Throws InputError when the file cannot be written.
 WrittenModel write_edited_model(const LoadedModel& before, const EditSession& session,
-                                const std::string& output,
-                                const std::vector<std::string>& converted, const Common& common);
+                                const std::string& output, const Common& common);
 
 }  // namespace isochor::app

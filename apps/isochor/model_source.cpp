@@ -35,8 +35,9 @@ LoadedModel load_json(const std::string& path) {
 }
 
 #ifdef ISOCHOR_WITH_OCCT
-LoadedModel from_solid(SolidModel solid) {
+LoadedModel from_solid(SolidModel solid, std::vector<int> converted) {
   LoadedModel loaded;
+  loaded.converted = std::move(converted);
   loaded.path = solid.path;
   loaded.patches = solid.patches;
   loaded.volume = solid.facts.volume;
@@ -131,7 +132,7 @@ LoadedModel load_model(const std::string& path, const Common& common,
   }
   if (!options.convert.empty()) solid = read_solid(path, options);
   for (const std::string& notice : solid.notices) detail(common, path + ": " + notice);
-  return from_solid(std::move(solid));
+  return from_solid(std::move(solid), std::move(options.convert));
 #else
   (void)common;
   (void)convert;

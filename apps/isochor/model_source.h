@@ -23,6 +23,7 @@ struct LoadedModel {
   double volume_bound = 0.0;
 #ifdef ISOCHOR_WITH_OCCT
   std::optional<SolidModel> solid;
+  std::vector<int> converted;  // 0-based faces that were turned into B-splines for this edit
 #endif
 };
 

@@ -1,6 +1,8 @@
 #include "isochor/step/checks.h"
 
+#include <BRepBndLib.hxx>
 #include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <TopExp.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
@@ -102,10 +104,13 @@ std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& re
     return changed("the number of edges", old_edges.Extent(), new_edges.Extent());
   }
   const Gaps old_gaps = measure_gaps(before), new_gaps = measure_gaps(rebuilt);
+  Bnd_Box box;
+  BRepBndLib::Add(before, box);
+  const double rounding = kLengthRounding * std::sqrt(box.SquareExtent());
   for (size_t k = 0; k < new_gaps.edges.size(); ++k) {
     const double own = BRep_Tool::Tolerance(TopoDS::Edge(old_edges(static_cast<int>(k) + 1)));
     const std::string text = grew("the gap along edge " + std::to_string(k + 1),
-                                  std::max(old_gaps.edges[k], own), new_gaps.edges[k], 0.0);
+                                  std::max(old_gaps.edges[k], own), new_gaps.edges[k], rounding);
     if (!text.empty()) return text;
   }
   return "";
