@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Edits every CAD file of a folder and prints a table: what was read, pulled, kept, checked.
 
-usage: real_files.py ISOCHOR FOLDER [--out FOLDER] [--seconds N]
+usage: real_files.py ISOCHOR [FOLDER] [--out FOLDER] [--seconds N]
+
+FOLDER defaults to ISOCHOR_EXTRA_DATA; with neither, nothing runs and the exit status is 77.
 
 Each file goes through `info`, `suggest` (a pull of 1 % of the diagonal at the freest place, volume
 kept) and `edit`, each in a process of its own. A refusal is an answer when it has a reason; a crash
@@ -90,12 +92,16 @@ def examine(isochor, path, out, seconds):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("isochor")
-    parser.add_argument("folder", type=pathlib.Path)
+    parser.add_argument("folder", nargs="?", default=os.environ.get("ISOCHOR_EXTRA_DATA"))
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("real_files_out"))
     parser.add_argument("--seconds", type=float, default=240.0)
     options = parser.parse_args()
+    if not options.folder:
+        print("skipped: no folder of real files (set ISOCHOR_EXTRA_DATA)")
+        return 77
     options.out.mkdir(parents=True, exist_ok=True)
-    files = sorted(p for p in options.folder.rglob("*") if p.suffix.lower() in SUFFIXES)
+    files = sorted(p for p in pathlib.Path(options.folder).rglob("*")
+                   if p.suffix.lower() in SUFFIXES)
     log = os.environ.get("ISOCHOR_EXTRA_DATA_LOG")
     failures = edited = 0
     print("| file | faces | editable | closed | pull | relative change | check | seconds |")
