@@ -1,7 +1,8 @@
 // Changing the format of a model: STEP, IGES, BREP, and patch models in memory.
 //
 // Laws (as for write_edited): the output is read back by a fresh process and compared before it is
-// put in its place; B-spline faces keep every bit; what a format cannot carry is a notice.
+// put in its place; B-spline faces keep every bit, and a notice names those that a format states in
+// another form; what it cannot carry is a notice too.
 #pragma once
 
 #include <string>
