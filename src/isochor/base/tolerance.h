@@ -79,4 +79,16 @@ inline constexpr double kSingularNormal = 1e-10;
 // kSameSurface * diagonal. Dimensionless; a few roundings of coordinates.
 inline constexpr double kSameSurface = 1e-12;
 
+// Two rows of a displacement map are the same when their coefficients, between 0 and 1, agree to
+// this: a few d roundings of knot insertion in two directions, for degrees to 25. Dimensionless.
+inline constexpr double kSameRow = 1e-12;
+
+// The direction of a volume correction is stationary when it turns by less than this; radians.
+// Below it the displacement changes by less than kReached of itself, so nothing visible is gained.
+inline constexpr double kStationary = 1e-13;
+
+// A volume gradient vanishes on the coefficients that may change when projecting it leaves less
+// than this part of it: what is left is rounding of the projection, not a direction. Dimensionless.
+inline constexpr double kVanishing = 1e-10;
+
 }  // namespace isochor

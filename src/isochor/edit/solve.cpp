@@ -11,14 +11,7 @@
 namespace isochor {
 namespace {
 
-// The direction of the correction is stationary when it turns by less than this (radians). Below
-// it the displacement changes by less than kReached of itself, so nothing visible is gained.
-constexpr double kStationary = 1e-13;
 constexpr int kMostIterations = 200;
-
-// The gradient is "zero on the sink" when projecting it leaves less than this part of it: what is
-// left is then rounding of the projection, not a direction.
-constexpr double kVanishing = 1e-10;
 
 double norm(const std::vector<double>& t) {
   return std::sqrt(std::inner_product(t.begin(), t.end(), t.begin(), 0.0));
