@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <TopExp_Explorer.hxx>
 
 #include <fstream>
 
 #include "isochor/base/error.h"
 #include "isochor/bspline/refinement.h"
 #include "isochor/step/checked_write.h"
+#include "isochor/step/compare_faces.h"
 #include "isochor/step/exchange.h"
 #include "isochor/step/solid_model.h"
 #include "step/pulls.h"
@@ -85,6 +87,17 @@ TEST(WriteEditedShapes, OtherFormatsWork) {
   expect_written(brep, folder.file("out.step"), 0, 2, 2);
   const auto iges = write(shapes::document_of(shapes::bicubic_cube()), folder, "in.igs");
   expect_written(iges, folder.file("out.igs"), 0, 2, 2);
+}
+
+// Many IGES writers state the shell only. Written as loose surfaces it would fall apart.
+TEST(WriteEditedShapes, ClosedIgesShellsWithoutASolidStayClosed) {
+  const TempFolder folder;
+  for (const auto& solid : {shapes::bicubic_cube(3.7), shapes::barrel(false)}) {
+    const TopoDS_Shape shell = TopExp_Explorer(solid, TopAbs_SHELL).Current();
+    const auto input = write(shapes::document_of(shell), folder, "shell.igs");
+    ASSERT_FALSE(TopExp_Explorer(load_document(input).shape, TopAbs_SOLID).More());
+    expect_written(input, folder.file("shell_out.igs"), 2, 3, 1);
+  }
 }
 
 TEST(WriteEditedShapes, AssembliesKeepTheirLabels) {
@@ -210,6 +223,14 @@ TEST(CheckedWrite, AFileThatReadsBackDifferentlyIsRefused) {
   EXPECT_FALSE(report.written);
   EXPECT_THAT(report.refusal, HasSubstr("not where it was"));
   EXPECT_FALSE(std::filesystem::exists(job.output));
+}
+
+TEST(CompareFaces, SmallMovesAreNamedWithTheirSizeAndUnit) {
+  const auto before = shapes::document_of(shapes::bicubic_cube(1.0), "inch");
+  const auto after = shapes::document_of(shapes::bicubic_cube(1.0 + 4e-10), "inch");
+  EXPECT_EQ(internal::compare_faces(before, before, {}).objection, "");
+  const std::string objection = internal::compare_faces(before, after, {}).objection;
+  EXPECT_THAT(objection, ::testing::MatchesRegex(".*not where it was.*off by .*e-1[01] inch.*"));
 }
 
 }  // namespace

@@ -24,18 +24,12 @@ constexpr double kSameArea = 1e-5;
 // Tolerances are stored with the digits of a double but read through a sum.
 constexpr double kSameTolerance = 1e-9;
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string first_defect(const ShapeFacts& facts) {
   return facts.defects.empty() ? "" : " (" + facts.defects.front() + ")";
 }
 
 std::string changed(const std::string& what, double from, double to) {
-  return what + " changed from " + number(from) + " to " + number(to);
+  return what + " changed from " + number_text(from) + " to " + number_text(to);
 }
 
 std::string changed(const std::string& what, int from, int to) {
@@ -44,7 +38,7 @@ std::string changed(const std::string& what, int from, int to) {
 
 std::string grew(const std::string& what, double from, double to, double allowed) {
   if (to <= from + allowed) return "";
-  return what + " grew from " + number(from) + " by " + number(to - from);
+  return what + " grew from " + number_text(from) + " by " + number_text(to - from);
 }
 
 // Loose faces get shells of their own in some formats, so open shells and their edges do not count.
@@ -62,7 +56,7 @@ std::string different_topology(const ShapeFacts& a, const ShapeFacts& b) {
 std::string different_measure(const std::string& what, double a, double b, double allowed) {
   if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(allowed)) return "";
   if (std::abs(a - b) <= allowed) return "";
-  return changed(what, a, b) + " (by " + number(b - a) + ")";
+  return changed(what, a, b) + " (by " + number_text(b - a) + ")";
 }
 
 // A name that is missing afterwards; readers may add names of their own.
@@ -76,6 +70,12 @@ std::string lost_name(std::vector<std::string> before, std::vector<std::string> 
 }
 
 }  // namespace
+
+std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
 
 std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt) {
   if (!before.valid) return "the input is not a valid solid" + first_defect(before);

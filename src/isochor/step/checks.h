@@ -10,6 +10,9 @@
 
 namespace isochor::internal {
 
+// Three digits, for messages; small values keep theirs (1.2e-10, not 0.000000).
+std::string number_text(double value);
+
 // Compares a rebuilt shape with its input. Reading a STEP file again repairs an invalid solid by
 // larger tolerances, so this must happen before anything is written.
 std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt);

@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 
+#include "isochor/step/checks.h"
 #include "isochor/step/file_surface.h"
 #include "isochor/step/occt_surface.h"
 
@@ -152,7 +153,7 @@ class Comparer {
     const double ulps = scale_.ulp > 0.0 ? moved / scale_.ulp : 0.0;
     if (!(moved <= kMayMove * scale_.diagonal)) {
       return object(k, "is not where it was, although it was not edited (off by " +
-                           std::to_string(moved / scale_.diagonal) + " of the diagonal)");
+                           number_text(moved) + " " + before_.unit.name + ")");
     }
     if (spline) return note(k, "is the same surface in a form with other poles");
     result_.analytic_ulps = std::max(result_.analytic_ulps, ulps);

@@ -66,8 +66,10 @@ void write_step(Document& document, const std::string& path, const WriteSettings
 
 void write_iges(Document& document, const std::string& path) {
   IGESControl_Controller::Init();
-  const bool solids = TopExp_Explorer(document.shape, TopAbs_SOLID).More();
-  Interface_Static::SetIVal("write.iges.brep.mode", solids ? 1 : 0);
+  // Only the B-rep form says which faces share an edge; many writers put closed shells without a
+  // solid into IGES. The other form would tear them into loose faces.
+  const bool shells = TopExp_Explorer(document.shape, TopAbs_SHELL).More();
+  Interface_Static::SetIVal("write.iges.brep.mode", shells ? 1 : 0);
   work_in(document.unit, document.xde);
   IGESCAFControl_Writer writer;
   writer.SetColorMode(true);
