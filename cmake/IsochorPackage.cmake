@@ -17,5 +17,6 @@ install(FILES
   "${ISOCHOR_PACKAGE_BINARY_DIR}/IsochorConfig.cmake"
   "${ISOCHOR_PACKAGE_BINARY_DIR}/IsochorConfigVersion.cmake"
   "${PROJECT_SOURCE_DIR}/cmake/FindFLINT.cmake"
+  "${PROJECT_SOURCE_DIR}/cmake/IsochorOpenCascade.cmake"
   DESTINATION "${ISOCHOR_PACKAGE_DIR}")
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
