@@ -28,13 +28,11 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
                          const std::string& output, const Common& common) {
   const SolidModel& solid = *before.solid;
   std::vector<EditedFace> faces;
-  for (size_t q = 0; q < session.changes().size(); ++q) {
-    const PatchChange& change = session.changes()[q];
-    if (!change.moved) continue;
+  for (size_t q = 0; q < session.moved_patches().size(); ++q) {
+    if (!session.moved_patches()[q]) continue;
     for (size_t f = 0; f < solid.faces.size(); ++f) {
       if (solid.faces[f].patch != static_cast<int>(q)) continue;
-      faces.push_back(
-          {static_cast<int>(f), session.model().surface(static_cast<int>(q)), change.sides});
+      faces.push_back({static_cast<int>(f), session.model().surface(static_cast<int>(q))});
     }
   }
   ReadOptions options = read_options(common);

@@ -261,8 +261,8 @@ TEST(EditSession, RefineAddsFreedomWithoutChangingTheShape) {
   EXPECT_NEAR(volume_of(session.model()), 1.0, 1e-14);
   EXPECT_EQ(session.model().patches[0].u_size(), 13);
   EXPECT_LE((session.model().surface(0).point(0.1, 0.1) - Vec3(0.1, 0.1, 1.0)).norm(), 1e-15);
-  EXPECT_TRUE(session.changes()[0].moved);
-  EXPECT_FALSE(session.changes()[1].moved);
+  EXPECT_TRUE(session.moved_patches()[0]);
+  EXPECT_FALSE(session.moved_patches()[1]);
 }
 
 TEST(EditSession, UndoRedoAndCancelRestoreEveryBit) {

@@ -46,9 +46,8 @@ EditRun run_edit(const std::string& model, const std::string& edits) {
   std::vector<EditedFace> faces;
   for (size_t f = 0; f < r.before.faces.size(); ++f) {
     const int patch = r.before.faces[f].patch;
-    if (patch < 0 || !session.changes()[static_cast<size_t>(patch)].moved) continue;
-    faces.push_back({static_cast<int>(f), session.model().surface(patch),
-                     session.changes()[static_cast<size_t>(patch)].sides});
+    if (patch < 0 || !session.moved_patches()[static_cast<size_t>(patch)]) continue;
+    faces.push_back({static_cast<int>(f), session.model().surface(patch)});
   }
   const fs::path output =
       fs::temp_directory_path() / ("isochor-edits-" + std::to_string(getpid()) + ".step");

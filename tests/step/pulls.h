@@ -29,7 +29,7 @@ inline std::vector<EditedFace> pull(const internal::Document& document, const Ve
       moved = true;
     }
     if (!moved) continue;
-    edits.push_back({f, Surface(old.u_knots(), old.v_knots(), poles, old.weights()), {}});
+    edits.push_back({f, Surface(old.u_knots(), old.v_knots(), poles, old.weights())});
   }
   return edits;
 }

@@ -208,7 +208,7 @@ TEST(Rebuild, RefinedSurfacesKeepUntouchedEdges) {
       refine(old, refined_to_spans(old.u_knots(), 12), refined_to_spans(old.v_knots(), 12));
   std::vector<Vec3> poles = fine.poles();
   poles[fine.index(6, 6)] += Vec3(0.1, 0, 0);
-  const EditedFace edit{0, Surface(fine.u_knots(), fine.v_knots(), poles), {}};
+  const EditedFace edit{0, Surface(fine.u_knots(), fine.v_knots(), poles)};
   const auto before = shape_facts(document);
   TopTools_IndexedMapOfShape old_edges, new_edges;
   TopExp::MapShapes(document.shape, TopAbs_EDGE, old_edges);

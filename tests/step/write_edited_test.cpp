@@ -119,7 +119,7 @@ TEST(WriteEditedShapes, ModelsThatWereReadCanBeWritten) {
   const Patch& patch = solid.patches.patches[2];
   points[static_cast<size_t>(patch.point(2, 3))] += Vec3(0.01, 0.1, 0.02);
   const auto report =
-      write_edited(input, {}, {{2, solid.patches.surface(2, points), {}}}, folder.file("out.step"));
+      write_edited(input, {}, {{2, solid.patches.surface(2, points)}}, folder.file("out.step"));
   ASSERT_TRUE(report.written) << report.refusal;
   EXPECT_EQ(report.edited_exact, 1);
   EXPECT_EQ(report.faces_identical, 5);
@@ -142,7 +142,7 @@ TEST(WriteEditedShapes, AConvertedPlaneIsEdited) {
   surface = refine(surface, refined_to_spans(u, 8), refined_to_spans(v, 8));
   std::vector<Vec3> poles = surface.poles();
   poles[surface.index(5, 5)] += Vec3(0.0, 0.0, 0.2);
-  const EditedFace edit{5, Surface(surface.u_knots(), surface.v_knots(), poles), {}};
+  const EditedFace edit{5, Surface(surface.u_knots(), surface.v_knots(), poles)};
   const auto report = write_edited(input, options, {edit}, folder.file("out.step"));
   ASSERT_TRUE(report.written) << report.refusal;
   EXPECT_EQ(report.edited_exact, 1);

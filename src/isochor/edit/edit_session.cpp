@@ -41,16 +41,9 @@ JoinRecord measure_joins(const PatchModel& before, const PatchModel& after) {
   return record;
 }
 
-PatchChange change_of(const Patch& patch, const std::vector<Vec3>& displacement) {
-  const auto moved = [&](int id) { return displacement[static_cast<size_t>(id)] != Vec3::Zero(); };
-  PatchChange change;
-  change.moved = std::any_of(patch.points.begin(), patch.points.end(), moved);
-  for (size_t s = 0; s < kSides.size() && change.moved; ++s) {
-    for (const auto& [i, j] : side_indices(patch, kSides[s])) {
-      change.sides[s] = change.sides[s] || moved(patch.point(i, j));
-    }
-  }
-  return change;
+bool has_moved(const Patch& patch, const std::vector<Vec3>& displacement) {
+  return std::any_of(patch.points.begin(), patch.points.end(),
+                     [&](int id) { return displacement[static_cast<size_t>(id)] != Vec3::Zero(); });
 }
 
 }  // namespace
@@ -61,7 +54,7 @@ struct EditSession::State {
     PatchModel model;
     double reference = 0.0;  // the volume that "keep" means
     double excess = 0.0;     // the model's volume minus the reference, from exact changes
-    std::vector<PatchChange> changes;
+    std::vector<bool> moved_patches;
   };
   struct Active {
     Edit edit;
@@ -119,7 +112,7 @@ EditSession::EditSession(PatchModel model, Surroundings surroundings)
   const Bounded patches = VolumeForm(model).bounded_value(model.points);
   state_->now.reference = patches.value + state_->surroundings.outside_volume;
   state_->patches_bound = patches.bound;
-  state_->now.changes.resize(model.patches.size());
+  state_->now.moved_patches.resize(model.patches.size());
   state_->now.model = std::move(model);
 }
 
@@ -133,7 +126,7 @@ const PatchModel& EditSession::candidate() const {
   return state_->active ? state_->active->candidate.model : state_->now.model;
 }
 
-const std::vector<PatchChange>& EditSession::changes() const { return state_->now.changes; }
+const std::vector<bool>& EditSession::moved_patches() const { return state_->now.moved_patches; }
 
 double EditSession::volume() const { return state_->total(); }
 
@@ -222,11 +215,9 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
   certificate.poles_moved = static_cast<int>(moved.size());
   active->candidate = now;
   for (size_t q = 0; q < rest.patches.size(); ++q) {
-    const PatchChange change = change_of(rest.patches[q], displacement);
-    certificate.patches_moved += change.moved;
-    PatchChange& all = active->candidate.changes[q];
-    all.moved = all.moved || change.moved;
-    for (size_t s = 0; s < 4; ++s) all.sides[s] = all.sides[s] || change.sides[s];
+    if (!has_moved(rest.patches[q], displacement)) continue;
+    ++certificate.patches_moved;
+    active->candidate.moved_patches[q] = true;
   }
   certificate.energy_before = result.positional_energy;
   certificate.energy_after = result.energy;

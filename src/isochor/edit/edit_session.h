@@ -11,7 +11,6 @@
 //      what one edit misses by rounding, the next one makes up for.
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,12 +31,6 @@ struct Surroundings {
   double outside_bound = 0.0;   // error bound of outside_volume
 };
 
-// What a session has changed of one patch since it began.
-struct PatchChange {
-  bool moved = false;           // some pole has moved
-  std::array<bool, 4> sides{};  // a pole of the boundary row has moved, in the order of kSides
-};
-
 class EditSession {
  public:
   explicit EditSession(PatchModel model, Surroundings surroundings = {});
@@ -49,8 +42,9 @@ class EditSession {
   const PatchModel& model() const;
   // While an edit is under way: the model it would commit; else the same as model().
   const PatchModel& candidate() const;
-  // By patch, up to the last commit. A patch that was only refined has not moved.
-  const std::vector<PatchChange>& changes() const;
+  // By patch: some pole has moved since the session began, up to the last commit. A patch that was
+  // only refined has not moved.
+  const std::vector<bool>& moved_patches() const;
   // The total volume of the last commit.
   double volume() const;
 

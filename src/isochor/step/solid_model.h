@@ -91,7 +91,6 @@ SolidModel read_solid(const std::string& path, const ReadOptions& options = {});
 struct EditedFace {
   int face = 0;  // 0-based
   Surface surface;
-  std::array<bool, 4> moved_sides{};  // in the order of kSides: the boundary row moved
 };
 
 // The result of writing an edited shape: checked before writing and after re-reading.
