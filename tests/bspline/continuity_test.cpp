@@ -259,27 +259,12 @@ TEST(Continuity, BoundaryRowsAreTheFunctionsThatDoNotVanish) {
 }
 
 TEST(Continuity, LockedSidesAndMismatchesHaveTheirReasons) {
-  PatchModel model;
   std::mt19937 random(75);
   const KnotVector knots = KnotVector::uniform(3, 5);
   const Surface surface = testing::random_surface(random, knots, knots, false);
   const Surface finer = refine(surface, knots, refined_to_spans(knots, 7));
-  for (const Surface* s : {&surface, &finer}) {
-    Patch patch{s == &surface ? "hull" : "",
-                "face:" + std::to_string(model.patches.size() + 1),
-                s->u_knots(),
-                s->v_knots(),
-                {},
-                {},
-                false,
-                {},
-                {}};
-    for (const Vec3& p : s->poles()) {
-      patch.points.push_back(static_cast<int>(model.points.size()));
-      model.points.push_back(p);
-    }
-    model.patches.push_back(patch);
-  }
+  PatchModel model = testing::make_separate_model({surface, finer});
+  model.patches[0].name = "hull";
   model.joins = {measure_join(model, {0, Side::kUEnd}, {1, Side::kUEnd}, false)};
   model.locked_sides = {{{0, Side::kVBegin},
                          "shares an edge with face:5 (plane), which is not edited",

@@ -21,28 +21,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// A model of separate surfaces, each with points of its own.
-PatchModel model_of(const std::vector<Surface>& surfaces) {
-  PatchModel model;
-  for (const Surface& surface : surfaces) {
-    Patch patch{"",
-                "face:" + std::to_string(model.patches.size() + 1),
-                surface.u_knots(),
-                surface.v_knots(),
-                {},
-                surface.weights(),
-                false,
-                {},
-                {}};
-    for (const Vec3& p : surface.poles()) {
-      patch.points.push_back(static_cast<int>(model.points.size()));
-      model.points.push_back(p);
-    }
-    model.patches.push_back(patch);
-  }
-  return model;
-}
-
 TEST(Joins, ACubeHasTwelveSharpOnes) {
   const PatchModel model = make_cube_model(3, 4);
   const std::vector<Join> joins = find_joins(model);
@@ -80,7 +58,7 @@ TEST(Joins, TiesJoinSeparatePoints) {
   PatchModel shared = make_cube_model(2, 3);
   std::vector<Surface> surfaces;
   for (int q = 0; q < 6; ++q) surfaces.push_back(shared.surface(q));
-  PatchModel model = model_of(surfaces);
+  PatchModel model = testing::make_separate_model(surfaces);
   EXPECT_THAT(find_joins(model), IsEmpty());
   EXPECT_EQ(closure(model).open_sides.size(), 24u);
   for (size_t i = 0; i < model.points.size(); ++i) {
@@ -190,7 +168,7 @@ TEST(Joins, TangentJoinMeasuresTheCurvatureJump) {
   for (double r : {0.5, 2.0}) {
     const Surface flat(KnotVector::uniform(1, 1), KnotVector::uniform(1, 1),
                        {{-1, 0, r}, {-1, 1, r}, {0, 0, r}, {0, 1, r}});
-    const PatchModel model = model_of({flat, quarter_cylinder(r)});
+    const PatchModel model = testing::make_separate_model({flat, quarter_cylinder(r)});
     const Join join = measure_join(model, {0, Side::kUEnd}, {1, Side::kUBegin}, false);
     EXPECT_TRUE(join.matching) << join.mismatch;
     EXPECT_EQ(join.smoothness, Smoothness::kTangent);
@@ -205,7 +183,7 @@ TEST(Joins, TangentJoinMeasuresTheCurvatureJump) {
 TEST(Joins, MeasuresFollowRotationAndScale) {
   const Surface flat(KnotVector::uniform(1, 1), KnotVector::uniform(1, 1),
                      {{-1, 0, 1}, {-1, 1, 1.01}, {0, 0, 1}, {0, 1, 1}});
-  PatchModel model = model_of({flat, quarter_cylinder(1.0)});
+  PatchModel model = testing::make_separate_model({flat, quarter_cylinder(1.0)});
   const SideRef a{0, Side::kUEnd};
   const SideRef b{1, Side::kUBegin};
   const Join before = measure_join(model, a, b, false);
@@ -231,7 +209,7 @@ TEST(Joins, MismatchesAreExplained) {
   const SideRef a{0, Side::kUBegin};
   const SideRef b{1, Side::kUBegin};
   const auto join_with = [&](const Surface& other) {
-    return measure_join(model_of({surface, other}), a, b, false);
+    return measure_join(testing::make_separate_model({surface, other}), a, b, false);
   };
   EXPECT_TRUE(join_with(surface).matching);
 
@@ -273,7 +251,7 @@ TEST(Joins, OpposedSidesMatchMirroredKnots) {
   for (int i = 0; i < first.u_size(); ++i) {
     for (int j = first.v_size() - 1; j >= 0; --j) poles.push_back(first.pole(i, j));
   }
-  const PatchModel model = model_of({first, Surface(u, mirrored, poles)});
+  const PatchModel model = testing::make_separate_model({first, Surface(u, mirrored, poles)});
   const Join join = measure_join(model, {0, Side::kUEnd}, {1, Side::kUEnd}, true);
   EXPECT_TRUE(join.matching) << join.mismatch;
   EXPECT_LT(join.max_gap, 1e-14);

@@ -11,12 +11,14 @@
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/refinement.h"
+#include "support/messages.h"
 #include "support/models.h"
 #include "support/splines.h"
 
 namespace isochor {
 namespace {
 
+using ::isochor::testing::message_of;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -196,23 +198,7 @@ TEST(ModelRefinement, NeighboursThatDoNotMatchAreLeftAlone) {
   std::mt19937 random(81);
   const Surface surface = testing::random_surface(random, knots, knots, false);
   const Surface other = refine(surface, knots, refined_to_spans(knots, 4));
-  PatchModel model;
-  for (const Surface* s : {&surface, &other}) {
-    Patch patch{"",
-                "face:" + std::to_string(model.patches.size() + 1),
-                s->u_knots(),
-                s->v_knots(),
-                {},
-                {},
-                false,
-                {},
-                {}};
-    for (const Vec3& p : s->poles()) {
-      patch.points.push_back(static_cast<int>(model.points.size()));
-      model.points.push_back(p);
-    }
-    model.patches.push_back(patch);
-  }
+  PatchModel model = testing::make_separate_model({surface, other});
   model.joins = {measure_join(model, {0, Side::kUEnd}, {1, Side::kUEnd}, false)};
   ASSERT_FALSE(model.joins[0].matching);
   const PatchModel fine = refine(model, 0, knots, with_knots(knots, {0.9}));
@@ -233,16 +219,6 @@ TEST(ModelRefinement, UnusedPointsCanBeDropped) {
   EXPECT_EQ(used_classes(compact), used_classes(fine));
   expect_same_shape(fine, compact, 1e-300);
   validate(compact);
-}
-
-template <typename Error, typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(ModelRefinement, ErrorsNameThePatch) {

@@ -8,11 +8,13 @@
 #include <cstring>
 
 #include "isochor/base/error.h"
+#include "support/messages.h"
 #include "support/splines.h"
 
 namespace isochor {
 namespace {
 
+using ::isochor::testing::message_of;
 using ::isochor::testing::random_clamped;
 using ::isochor::testing::random_insertions;
 using ::isochor::testing::random_points;
@@ -297,16 +299,6 @@ TEST(Refinement, SpansAreDividedEvenlyAndOldKnotsStay) {
   const auto more = inserted_knots(wrapped, refined_to_spans(wrapped, 20));
   EXPECT_GE(more.size(), 16u);
   EXPECT_EQ(wrapped_poles(wrapped_with_knots(wrapped, more)), 3);
-}
-
-template <typename Error, typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(Refinement, ErrorsNameTheValue) {

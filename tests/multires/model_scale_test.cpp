@@ -5,12 +5,14 @@
 
 #include "isochor/base/error.h"
 #include "isochor/bspline/joins.h"
+#include "support/messages.h"
 #include "support/models.h"
 #include "support/splines.h"
 
 namespace isochor {
 namespace {
 
+using ::isochor::testing::message_of;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
@@ -107,25 +109,18 @@ TEST(ModelScale, TorusKeepsWrapping) {
   EXPECT_LT(scales[0].u.coarse.size(), model.patches[0].u_size());
 }
 
-template <typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 TEST(ModelScale, ErrorsNameThePatch) {
   const PatchModel model = uneven_box();
-  EXPECT_THAT(message_of([&] { (void)keep_knots(model, {{2, {0.55}, {}}}); }), HasSubstr("face:3"));
+  EXPECT_THAT(message_of<InputError>([&] {
+                (void)keep_knots(model, {{2, {0.55}, {}}});
+              }),
+              HasSubstr("face:3"));
   // Top and bottom share their x knots through front and back.
-  const std::string contradiction = message_of([&] {
+  const std::string contradiction = message_of<InputError>([&] {
     (void)keep_knots(model, {{0, {0.3}, {}}, {1, {}, {0.7}}});
   });
   EXPECT_THAT(contradiction, HasSubstr("left out here but kept by a list of a joined patch"));
-  EXPECT_THAT(message_of([&] { (void)keep_every(model, 0); }), HasSubstr("at least 1"));
+  EXPECT_THAT(message_of<InputError>([&] { (void)keep_every(model, 0); }), HasSubstr("at least 1"));
 }
 
 }  // namespace

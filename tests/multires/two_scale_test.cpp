@@ -8,11 +8,13 @@
 
 #include "isochor/base/error.h"
 #include "isochor/volume/gauss.h"
+#include "support/messages.h"
 #include "support/splines.h"
 
 namespace isochor {
 namespace {
 
+using ::isochor::testing::message_of;
 using ::isochor::testing::random_clamped;
 using ::isochor::testing::random_points;
 using ::isochor::testing::random_unclamped;
@@ -161,16 +163,6 @@ TEST(TwoScale, WrappedWithMultipleEndKnots) {
   EXPECT_EQ(wrapped_poles(scale.coarse), 2);
   EXPECT_THAT(scale.coarse.interior(), ElementsAre(0.75, 0.75));
   EXPECT_EQ(keep_every(trimmed, 5, Wrap::kYes).coarse.size(), 4);
-}
-
-template <typename Error, typename Action>
-std::string message_of(Action action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 TEST(TwoScale, ErrorsNameTheKnot) {

@@ -232,6 +232,27 @@ PatchModel make_cylinder(double radius, double height) {
   return model;
 }
 
+PatchModel make_separate_model(const std::vector<Surface>& surfaces) {
+  PatchModel model;
+  for (const Surface& surface : surfaces) {
+    Patch patch{"",
+                "face:" + std::to_string(model.patches.size() + 1),
+                surface.u_knots(),
+                surface.v_knots(),
+                {},
+                surface.weights(),
+                false,
+                {},
+                {}};
+    for (const Vec3& p : surface.poles()) {
+      patch.points.push_back(static_cast<int>(model.points.size()));
+      model.points.push_back(p);
+    }
+    model.patches.push_back(patch);
+  }
+  return model;
+}
+
 void translate(PatchModel& model, const Vec3& t) {
   for (Vec3& p : model.points) p += t;
 }

@@ -44,6 +44,9 @@ PatchModel make_periodic_torus(int degree_u, int degree_v, int rows, int columns
 PatchModel make_sphere(double radius);
 PatchModel make_cylinder(double radius, double height);
 
+// Separate surfaces, each with points of its own and the handle "face:<number>"; no ties, no joins.
+PatchModel make_separate_model(const std::vector<Surface>& surfaces);
+
 // Moves all points by t; sizes all points by the matrix.
 void translate(PatchModel& model, const Vec3& t);
 void transform(PatchModel& model, const Eigen::Matrix3d& matrix);
