@@ -1,6 +1,7 @@
 #include <string>
 #include <vector>
 
+#include "busy_line.h"
 #include "commands.h"
 #include "isochor/base/error.h"
 #include "isochor/io/file.h"
@@ -29,7 +30,15 @@ int finish(const ConvertOptions& options, const Common& common,
 }
 
 #ifdef ISOCHOR_WITH_OCCT
-int finish_checked(const ConvertOptions& options, const Common& common, const WriteReport& report) {
+template <typename Write>
+WriteReport write_busily(const ConvertOptions& options, const Common& common, Write write) {
+  const BusyLine busy(common, "writing and checking " + options.output);
+  return write(read_options(common).limits);
+}
+
+template <typename Write>
+int finish_checked(const ConvertOptions& options, const Common& common, Write write) {
+  const WriteReport report = write_busily(options, common, write);
   if (report.written) return finish(options, common, report.notices);
   note(common, options.input + ": refused: " + report.refusal);
   print_json(common, Value::object().set("outcome", "refused").set("reason", report.refusal));
@@ -61,14 +70,15 @@ int run_convert(const ConvertOptions& options, const Common& common) {
   }
 #ifdef ISOCHOR_WITH_OCCT
   if (is_cad_file(options.input) && is_cad_file(options.output)) {
-    return finish_checked(options, common,
-                          convert_file(options.input, options.output, read_options(common).limits));
+    return finish_checked(options, common, [&](const BridgeLimits& limits) {
+      return convert_file(options.input, options.output, limits);
+    });
   }
   if (from_json && is_cad_file(options.output)) {
     const LoadedModel loaded = load_model(options.input, common);
-    return finish_checked(options, common,
-                          write_patch_model(loaded.patches, options.input, options.output,
-                                            read_options(common).limits));
+    return finish_checked(options, common, [&](const BridgeLimits& limits) {
+      return write_patch_model(loaded.patches, options.input, options.output, limits);
+    });
   }
   if (is_cad_file(options.input) && to_json) {
     const LoadedModel loaded = load_model(options.input, common);

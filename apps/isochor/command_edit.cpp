@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <set>
 
+#include "busy_line.h"
 #include "commands.h"
 #include "edit_output.h"
 #include "isochor/base/error.h"
@@ -42,9 +43,10 @@ EditScript read_script(const std::string& path) {
 }
 
 std::vector<Certificate> apply_all(const EditScript& script, EditSession& session,
-                                   const std::string& edits_path) {
+                                   const std::string& edits_path, const Common& common) {
   std::vector<Certificate> certificates;
   for (size_t k = 0; k < script.edits.size(); ++k) {
+    const BusyLine busy(common, "edit \"" + script.edits[k].name + "\"");
     try {
       certificates.push_back(session.apply(script.edits[k]));
     } catch (const InputError& error) {
@@ -99,7 +101,7 @@ int run_edit(const EditOptions& options, const Common& common) {
                      "(see isochor info)");
   }
   EditSession session(loaded.patches, loaded.surroundings);
-  const std::vector<Certificate> certificates = apply_all(script, session, options.edits);
+  const std::vector<Certificate> certificates = apply_all(script, session, options.edits, common);
   Outcome outcome = overall_outcome(certificates);
 
   WrittenModel written;

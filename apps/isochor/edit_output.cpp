@@ -1,5 +1,7 @@
 #include "edit_output.h"
 
+#include "busy_line.h"
+
 #include "isochor/base/error.h"
 #include "isochor/io/file.h"
 #include "isochor/io/model_json.h"
@@ -37,6 +39,7 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
   }
   ReadOptions options = read_options(common);
   options.convert = before.converted;
+  const BusyLine busy(common, "writing and checking " + output);
   const WriteReport report = write_edited(before.path, options, faces, output);
   WrittenModel result;
   result.written = report.written;

@@ -13,7 +13,8 @@ void add_common(CLI::App& app, Common& common) {
   app.add_flag("--json", common.json, "print one JSON value on stdout, nothing else there");
   app.add_flag("-q,--quiet", common.quiet, "print nothing but errors");
   app.add_flag("-v,--verbose", common.verbose, "also print notices of the readers");
-  app.add_option("-j,--threads", common.threads, "threads (results do not depend on it)")
+  app.add_option("-j,--threads", common.threads,
+                 "at most N threads; this version uses one (results do not depend on it)")
       ->check(CLI::PositiveNumber);
   app.add_option("--progress", common.progress, "a bar on stderr for long work: auto or never")
       ->check(CLI::IsMember({"auto", "never"}));

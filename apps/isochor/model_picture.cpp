@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "busy_line.h"
 #include "isochor/io/image.h"
 #include "isochor/picture/edit_picture.h"
 #include "isochor/picture/tessellate.h"
@@ -52,6 +53,7 @@ std::vector<Surface> surfaces_of(const PatchModel& model) {
 }  // namespace
 
 ModelMesh mesh_of(const LoadedModel& model, const Common& common) {
+  const BusyLine busy(common, "cutting " + model.path + " into triangles");
   ModelMesh result;
   if (!model.patches.patches.empty()) {
     const Tessellator tessellator(model.patches);
@@ -65,6 +67,7 @@ ModelMesh mesh_of(const LoadedModel& model, const Common& common) {
 void write_edit_picture(const LoadedModel& before, const EditSession& session,
                         const std::vector<Certificate>& certificates, const std::string& path,
                         const Common& common) {
+  const BusyLine busy(common, "drawing " + path);
   // Cut on the edited shape, so that the cells are fine enough for it, and evaluated on both.
   const PatchModel& now = session.model();
   const std::vector<Surface> then = surfaces_of(before.patches);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "busy_line.h"
 #include "isochor/base/error.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/io/file.h"
@@ -105,17 +106,12 @@ int find_face(const SolidModel& solid, const std::string& name) {
                    "the name is ambiguous, use one of: " + listed);
 }
 
-#endif
+namespace {
 
-LoadedModel load_model(const std::string& path, const Common& common,
-                       const std::vector<std::string>& convert) {
-  if (extension_of(path) == "isochor.json") return load_json(path);
-  if (!is_cad_file(path)) {
-    read_file(path);  // a missing file is the better message
-    throw InputError(path, "",
-                     "unknown model format; known are .step .stp .iges .igs .brep .isochor.json");
-  }
-#ifdef ISOCHOR_WITH_OCCT
+// The solid with the faces named in `convert` turned into patches; `converted` gets their numbers.
+SolidModel read_converted(const std::string& path, const Common& common,
+                          const std::vector<std::string>& convert, std::vector<int>& converted) {
+  const BusyLine busy(common, "reading " + path);
   ReadOptions options = read_options(common);
   SolidModel solid = read_solid(path, options);
   for (const std::string& name : convert) {
@@ -131,8 +127,27 @@ LoadedModel load_model(const std::string& path, const Common& common,
     }
   }
   if (!options.convert.empty()) solid = read_solid(path, options);
+  converted = std::move(options.convert);
+  return solid;
+}
+
+}  // namespace
+
+#endif
+
+LoadedModel load_model(const std::string& path, const Common& common,
+                       const std::vector<std::string>& convert) {
+  if (extension_of(path) == "isochor.json") return load_json(path);
+  if (!is_cad_file(path)) {
+    read_file(path);  // a missing file is the better message
+    throw InputError(path, "",
+                     "unknown model format; known are .step .stp .iges .igs .brep .isochor.json");
+  }
+#ifdef ISOCHOR_WITH_OCCT
+  std::vector<int> converted;
+  SolidModel solid = read_converted(path, common, convert, converted);
   for (const std::string& notice : solid.notices) detail(common, path + ": " + notice);
-  return from_solid(std::move(solid), std::move(options.convert));
+  return from_solid(std::move(solid), std::move(converted));
 #else
   (void)common;
   (void)convert;
