@@ -9,6 +9,7 @@
 #include <BRepLib.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRep_Tool.hxx>
+#include <Geom_ToroidalSurface.hxx>
 #include <Quantity_Color.hxx>
 #include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
@@ -159,6 +160,15 @@ TopoDS_Shape holed_cube() {
 TopoDS_Solid cylinder(double radius, double height) {
   return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0.1, 0.2, 0.3), gp_Dir(1, 2, 3)), radius, height)
       .Solid();
+}
+
+TopoDS_Solid lens() {
+  constexpr double kHole = 0.7, kTube = 2.1, kLow = 0.2, kHigh = 1.1;
+  const gp_Ax3 axes(gp_Pnt(0.1, 0.2, 0.3), gp_Dir(0, 0, 1), gp_Dir(1, 2, 0));
+  const Handle(Geom_Surface) torus = new Geom_ToroidalSurface(axes, kHole, kTube);
+  const TopoDS_Face side = BRepBuilderAPI_MakeFace(torus, 0.0, 2 * kPi, kLow, kHigh, 1e-9);
+  const double low = 0.3 + kTube * std::sin(kLow), high = 0.3 + kTube * std::sin(kHigh);
+  return solid_of({side, cap(side, low, false), cap(side, high, true)});
 }
 
 internal::Document document_of(const TopoDS_Shape& shape, const std::string& unit) {

@@ -25,6 +25,9 @@ TopoDS_Shape holed_cube();
 
 TopoDS_Solid cylinder(double radius = 0.5, double height = 2.0);
 
+// A lens around z between two planar caps: its side is a torus whose tube is wider than its hole.
+TopoDS_Solid lens();
+
 // A document as a reader would give it.
 internal::Document document_of(const TopoDS_Shape& shape, const std::string& unit = "mm");
 

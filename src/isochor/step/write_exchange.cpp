@@ -19,6 +19,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
+#include "isochor/step/written_torus.h"
 
 namespace isochor::internal {
 namespace {
@@ -56,6 +57,7 @@ void write_step(Document& document, const std::string& path, const WriteSettings
   for (const auto& [face, surface] : settings.surfaces) {
     restore_numbers(session, document.face(face), surface);
   }
+  restore_tori(session, document);
   const auto model = Handle(StepData_StepModel)::DownCast(session->Model());
   // The writer's own printing rounds to 12 digits, so print here.
   StepData_StepWriter printer(model);
