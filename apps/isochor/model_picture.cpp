@@ -109,10 +109,14 @@ void write_edit_picture(const LoadedModel& before, const EditSession& session,
   }
   const VolumeRecord& first = certificates.front().volume;
   const VolumeRecord& last = certificates.back().volume;
+  double change = 0.0;  // the sum keeps what the difference of two large volumes would lose
+  for (const Certificate& certificate : certificates) {
+    change += certificate.volume.relative_change * certificate.volume.before / first.before;
+  }
   const char* unit = input.unit.c_str();
   input.caption = {format("volume before %.12g %s\u00b3", first.before, unit),
                    format("volume after %.12g %s\u00b3", last.after, unit),
-                   format("relative change %.2g", (last.after - first.before) / first.before)};
+                   format("relative change %.2g", change)};
   write_png(path, edit_picture(input));
 }
 

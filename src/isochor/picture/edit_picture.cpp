@@ -28,6 +28,12 @@ Camera camera_for(const Mesh& mesh, const std::optional<Focus>& focus, const Vec
   return look_along(toward, up);
 }
 
+// Close by, a bulge shows best from half way between the view of the whole and its own normal: from
+// the side it is a line on the horizon, from above it is flat.
+Camera close_camera(const Camera& whole, const std::optional<Focus>& focus, const Vec3& up) {
+  return focus ? look_along(whole.toward + focus->normal.normalized(), up) : whole;
+}
+
 std::vector<Vec3> used_positions(const Mesh& mesh) {
   std::vector<char> used(mesh.positions.size(), 0);
   std::vector<Vec3> points;
@@ -184,8 +190,9 @@ Image edit_picture(const PictureInput& input, const PictureSize& size) {
   const Frame2d whole =
       covered(direction, joined(used_positions(input.before), used_positions(input.after)));
   const std::vector<Vec3> moved = moved_positions(input.before, input.after);
+  const Camera close_direction = close_camera(direction, input.focus, input.up);
   Frame2d near = whole;
-  if (!moved.empty()) near = enlarged(covered(direction, moved), 1.3);
+  if (!moved.empty()) near = enlarged(covered(close_direction, moved), 1.3);
   const bool close_up = near.width() < kSmallRegion * whole.width() &&
                         near.height() < kSmallRegion * std::max(whole.height(), whole.width() / 3);
   const double shape = aspect(whole);
@@ -210,8 +217,8 @@ Image edit_picture(const PictureInput& input, const PictureSize& size) {
     for (size_t part = 0; part < (close_up ? 2u : 1u); ++part) {
       const size_t column = wide ? part : kind, row = wide ? kind : part;
       view.label = labels[kind] + std::string(part == 1 ? ", close" : "");
-      view.camera = fit(direction, part == 1 ? near : whole, grid.widths[column], grid.heights[row],
-                        kPanelMargin);
+      view.camera = fit(part == 1 ? close_direction : direction, part == 1 ? near : whole,
+                        grid.widths[column], grid.heights[row], kPanelMargin);
       page.panel(grid.x(column), grid.y(row), view);
     }
   }
