@@ -209,4 +209,19 @@ internal::Document assembly(const std::string& unit) {
   return document;
 }
 
+internal::Document placed(const TopoDS_Shape& part, const std::vector<gp_Trsf>& places) {
+  internal::Document document;
+  document.unit = internal::unit_of_name("mm");
+  document.xde = internal::new_xde();
+  const auto shapes = XCAFDoc_DocumentTool::ShapeTool(document.xde->Main());
+  const TDF_Label bar = shapes->AddShape(part, Standard_False);
+  TDataStd_Name::Set(bar, "bar");
+  const TDF_Label rack = shapes->NewShape();
+  TDataStd_Name::Set(rack, "rack");
+  for (const gp_Trsf& place : places) shapes->AddComponent(rack, bar, TopLoc_Location(place));
+  shapes->UpdateAssemblies();
+  internal::index_document(document);
+  return document;
+}
+
 }  // namespace isochor::shapes

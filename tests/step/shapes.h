@@ -4,7 +4,9 @@
 #include <Geom_BSplineSurface.hxx>
 #include <TopoDS_Shape.hxx>
 #include <TopoDS_Solid.hxx>
+#include <gp_Trsf.hxx>
 #include <string>
+#include <vector>
 
 #include "isochor/step/document.h"
 
@@ -34,5 +36,8 @@ internal::Document document_of(const TopoDS_Shape& shape, const std::string& uni
 // An assembly "pair" of a cube "box" and a cylinder "pin" used at two places; the first face of the
 // cube is named "lid" and red, the cylinder is blue.
 internal::Document assembly(const std::string& unit = "mm");
+
+// An assembly "rack" of a part "bar" at each of these places.
+internal::Document placed(const TopoDS_Shape& part, const std::vector<gp_Trsf>& places);
 
 }  // namespace isochor::shapes

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <BRepPrimAPI_MakeBox.hxx>
+#include <BRepTools.hxx>
 #include <TopExp_Explorer.hxx>
 
 #include <fstream>
@@ -128,6 +129,16 @@ TEST(WriteEditedShapes, ModelsThatWereReadCanBeWritten) {
   EXPECT_EQ(again.unit, "inch");
 }
 
+// The surface of a converted face, refined, with one pole moved.
+Surface dented(const SolidModel& solid, const Vec3& move) {
+  Surface surface = solid.patches.surface(0);
+  surface = refine(surface, refined_to_spans(surface.u_knots(), 8),
+                   refined_to_spans(surface.v_knots(), 8));
+  std::vector<Vec3> poles = surface.poles();
+  poles[surface.index(5, 5)] += move;
+  return Surface(surface.u_knots(), surface.v_knots(), poles);
+}
+
 TEST(WriteEditedShapes, AConvertedPlaneIsEdited) {
   const TempFolder folder;
   const auto box = shapes::document_of(BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Solid());
@@ -136,13 +147,7 @@ TEST(WriteEditedShapes, AConvertedPlaneIsEdited) {
   options.convert = {5};
   const SolidModel solid = read_solid(input, options);
   ASSERT_EQ(solid.patches.patches.size(), 1u);
-  Surface surface = solid.patches.surface(0);
-  const auto& u = surface.u_knots();
-  const auto& v = surface.v_knots();
-  surface = refine(surface, refined_to_spans(u, 8), refined_to_spans(v, 8));
-  std::vector<Vec3> poles = surface.poles();
-  poles[surface.index(5, 5)] += Vec3(0.0, 0.0, 0.2);
-  const EditedFace edit{5, Surface(surface.u_knots(), surface.v_knots(), poles)};
+  const EditedFace edit{5, dented(solid, {0.0, 0.0, 0.2})};
   const auto report = write_edited(input, options, {edit}, folder.file("out.step"));
   ASSERT_TRUE(report.written) << report.refusal;
   EXPECT_EQ(report.edited_exact, 1);
@@ -151,6 +156,55 @@ TEST(WriteEditedShapes, AConvertedPlaneIsEdited) {
   // Without the request the face is what the file says.
   EXPECT_THAT(write_edited(input, {}, {edit}, folder.file("no.step")).refusal,
               HasSubstr("not a B-spline"));
+}
+
+// A part that an assembly turns and shifts: the surface is stored in the part's own coordinates.
+TEST(WriteEditedShapes, AConvertedPlaneOfAPlacedPartIsEditedWhereItStands) {
+  const TempFolder folder;
+  gp_Trsf turn, shift;
+  turn.SetRotation(gp_Ax1(gp_Pnt(1, 2, 3), gp_Dir(1, 2, 2)), 0.7);
+  shift.SetTranslation(gp_Vec(20.1, -3.3, 0.7));
+  const auto box = BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Solid();
+  const auto input = write(shapes::placed(box, {turn * shift}), folder, "placed.step");
+  ReadOptions options;
+  options.convert = {5};
+  const SolidModel solid = read_solid(input, options);
+  ASSERT_EQ(solid.patches.patches.size(), 1u);
+  const Vec3 corner = solid.patches.surface(0).pole(0, 0);
+  EXPECT_GT(corner.norm(), 10.0) << "where the assembly shows it";
+  const Vec3 move = 0.2 * solid.patches.surface(0).normal(0.5, 1.0);
+  const EditedFace edit{5, dented(solid, move)};
+  const auto report = write_edited(input, options, {edit}, folder.file("out.step"));
+  ASSERT_TRUE(report.written) << report.refusal;
+  EXPECT_EQ(report.edited_exact, 1);
+  EXPECT_LE(report.analytic_ulps, 4.0);
+  EXPECT_LE(report.reread.max_tolerance, report.before.max_tolerance);
+  const SolidModel again = read_solid(folder.file("out.step"));
+  ASSERT_EQ(again.patches.patches.size(), 1u);
+  const Surface& meant = edit.surface;
+  const Surface found = again.patches.surface(0);
+  ASSERT_EQ(found.poles().size(), meant.poles().size());
+  for (size_t k = 0; k < meant.poles().size(); ++k) {
+    EXPECT_LT((found.poles()[k] - meant.poles()[k]).norm(), 1e-13 * corner.norm());
+  }
+}
+
+TEST(WriteEditedShapes, AConvertedPlaneOfAMirroredPartIsRefused) {
+  const TempFolder folder;
+  gp_Trsf mirror;
+  mirror.SetMirror(gp_Ax2(gp_Pnt(0, 0, 5), gp_Dir(0, 0, 1)));
+  TopoDS_Shape box = BRepPrimAPI_MakeBox(1.0, 2.0, 3.0).Solid();
+  box.Location(TopLoc_Location(mirror), Standard_False);
+  const std::string path = folder.file("mirrored.brep");
+  BRepTools::Write(box, path.c_str());
+  ReadOptions options;
+  options.convert = {5};
+  try {
+    read_solid(path, options);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.reason(), HasSubstr("mirrored"));
+  }
 }
 
 TEST(WriteEditedShapes, RefusalsLeaveAnOlderOutputAlone) {

@@ -9,8 +9,6 @@
 #include <BRep_Tool.hxx>
 #include <Geom_ToroidalSurface.hxx>
 #include <TopoDS_Compound.hxx>
-#include <XCAFDoc_DocumentTool.hxx>
-#include <XCAFDoc_ShapeTool.hxx>
 
 #include <fstream>
 
@@ -86,18 +84,9 @@ TEST(WrittenTorus, PlacesAndLeftHandedAxesDoNotMatter) {
 }
 
 TEST(WrittenTorus, APartUsedTwiceIsWrittenOnce) {
-  Document document;
-  document.unit = internal::unit_of_name("mm");
-  document.xde = internal::new_xde();
-  const auto tool = XCAFDoc_DocumentTool::ShapeTool(document.xde->Main());
-  const TDF_Label part = tool->AddShape(shapes::lens(), Standard_False);
-  const TDF_Label pair = tool->NewShape();
   gp_Trsf turn;
   turn.SetRotation(gp_Ax1(gp_Pnt(7, 0, 0), gp_Dir(1, 1, 0)), 0.4);
-  tool->AddComponent(pair, part, TopLoc_Location());
-  tool->AddComponent(pair, part, TopLoc_Location(turn));
-  tool->UpdateAssemblies();
-  index_document(document);
+  Document document = shapes::placed(shapes::lens(), {gp_Trsf(), turn});
   expect_kept(document, 2);
   const TempFolder folder;
   write_document(document, folder.file("pair.step"));

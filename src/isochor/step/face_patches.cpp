@@ -115,6 +115,13 @@ FaceSurface describe_surface(const Handle(Geom_Surface) & surface) {
   return result;
 }
 
+bool moved_rigidly(const TopoDS_Face& face) {
+  TopLoc_Location location;
+  BRep_Tool::Surface(face, location);
+  const gp_Trsf& move = location.Transformation();
+  return !move.IsNegative() && std::abs(move.ScaleFactor() - 1.0) <= kSameSurface;
+}
+
 FaceSurface face_surface(const TopoDS_Face& face) {
   TopLoc_Location location;
   FaceSurface result = describe_surface(BRep_Tool::Surface(face, location));
@@ -124,7 +131,7 @@ FaceSurface face_surface(const TopoDS_Face& face) {
   const gp_Trsf& move = location.Transformation();
   result.geometry = Handle(Geom_Surface)::DownCast(result.geometry->Transformed(move));
   if (!result.surface) return result;
-  if (move.IsNegative() || std::abs(move.ScaleFactor() - 1.0) > kSameSurface) {
+  if (!moved_rigidly(face)) {
     result.surface.reset();
     result.refusal = "its part is mirrored or scaled by an assembly";
     return result;

@@ -28,6 +28,9 @@ struct FaceSurface {
   std::string refusal;             // when not: why, in words
 };
 
+// Whether the face stands where it is stored, or turned and shifted only.
+bool moved_rigidly(const TopoDS_Face& face);
+
 FaceSurface face_surface(const TopoDS_Face& face);
 
 // The same for a surface alone. `geometry` is left null when `surface` is.

@@ -74,7 +74,9 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
                                 local_surface(edited.surface, face),
                                 {}});
         const auto before = converted.find(edited.face);
-        if (before != converted.end()) part.changes.back().before = before->second;
+        if (before != converted.end()) {
+          part.changes.back().before = local_surface(before->second, face);
+        }
       }
     }
     if (!found) return handle_of(edited.face) + ": belongs to no part of the file";
@@ -83,7 +85,7 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
 }
 
 // The surfaces of faces that are to be B-spline faces although the file has them as something else,
-// as read_solid showed them. Converted faces stand where their part stands (see convert_face).
+// as read_solid showed them: in the coordinates of the document.
 std::string convert_all(const Document& document, const std::vector<int>& convert,
                         std::map<int, Surface>& converted) {
   if (convert.empty()) return "";
