@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Runs every acceptance command on one build and ends with a line for each.
+
+usage: all.py BUILD_FOLDER [REAL_FILES]
+
+BUILD_FOLDER is a CMake build tree such as build/release. REAL_FILES, a folder of CAD files, defaults to
+ISOCHOR_EXTRA_DATA; without either, real_files.py is skipped. Exit status 1 when a command fails.
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+SKIPPED = 77
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build_folder", type=pathlib.Path)
+    parser.add_argument("real_files", nargs="?", default=os.environ.get("ISOCHOR_EXTRA_DATA"))
+    options = parser.parse_args()
+    program = options.build_folder / "bin" / "isochor"
+    real_files = [program] + ([options.real_files] if options.real_files else [])
+    real_files += ["--out", options.build_folder / "acceptance" / "real_files"]
+    commands = [("laws.py", [options.build_folder]), ("figure_four.py", [program]),
+                ("solids.py", [program]), ("real_files.py", real_files)]
+    here = pathlib.Path(__file__).resolve().parent
+    verdicts = []
+    for name, arguments in commands:
+        print(f"\n== {name}", flush=True)
+        started = time.monotonic()
+        status = subprocess.run([sys.executable, "-B", here / name, *map(str, arguments)]).returncode
+        verdicts.append((name, status, time.monotonic() - started))
+    print("\n== summary")
+    for name, status, seconds in verdicts:
+        word = {0: "ok", SKIPPED: "skipped"}.get(status, "NOT OK")
+        print(f"{name:16} {word:8} {seconds:6.1f} s")
+    failed = any(status not in (0, SKIPPED) for _, status, _ in verdicts)
+    print("NOT OK" if failed else "ok")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
