@@ -29,6 +29,28 @@ std::vector<std::string> convertible_faces(const LoadedModel& loaded) {
   return handles;
 }
 
+// Where no face can be edited at all, the largest says why.
+std::string why_nothing_is_free(const LoadedModel& loaded,
+                                const std::vector<std::string>& convertible) {
+  const std::string hint = "; isochor info lists what holds each face";
+#ifdef ISOCHOR_WITH_OCCT
+  if (loaded.solid && loaded.patches.patches.empty() && convertible.empty()) {
+    const auto& faces = loaded.solid->faces;
+    const auto largest =
+        std::max_element(faces.begin(), faces.end(),
+                         [](const FaceFacts& a, const FaceFacts& b) { return a.area < b.area; });
+    if (largest != faces.end()) {
+      return "no face can be edited; the largest is " + largest->handle + ": " +
+             largest->not_editable + hint;
+    }
+  }
+#else
+  (void)loaded;
+  (void)convertible;
+#endif
+  return "no face has a place that is free enough, even refined" + hint;
+}
+
 }  // namespace
 
 int run_suggest(const SuggestOptions& options, const Common& common) {
@@ -44,9 +66,7 @@ int run_suggest(const SuggestOptions& options, const Common& common) {
     }
   }
   if (!edit) {
-    note(common, options.model +
-                     ": refused: no face has a place that is free enough, even refined; isochor "
-                     "info lists what holds each face");
+    note(common, options.model + ": refused: " + why_nothing_is_free(loaded, candidates));
     print_json(common, Value::object().set("outcome", "refused"));
     return kExitNo;
   }

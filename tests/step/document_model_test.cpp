@@ -62,6 +62,39 @@ TEST(DocumentModel, AssemblyNamesPartsByPathAndEditsOnlyPartsUsedOnce) {
   EXPECT_THAT(model.faces[6].not_editable, HasSubstr("cylinder"));
 }
 
+TEST(DocumentModel, FacesOfPartsUsedSeveralTimesNameThePart) {
+  const SolidModel model = document_model(shapes::assembly());
+  int planes = 0;
+  for (size_t f = 0; f < model.faces.size(); ++f) {
+    const FaceFacts& face = model.faces[f];
+    const bool pin = f >= 6;
+    const std::string reason = "it belongs to the part 'pin', which is used 2 times";
+    EXPECT_EQ(face.not_editable.find(reason) != std::string::npos, pin) << face.handle;
+    if (face.surface != "plane") continue;
+    ++planes;
+    EXPECT_FALSE(face.convertible);
+    EXPECT_THAT(face.not_editable, HasSubstr("it is a plane, not a B-spline surface; it belongs"));
+  }
+  EXPECT_EQ(planes, 4);  // two caps, twice
+}
+
+TEST(DocumentModel, ConvertingAFaceOfAPartUsedTwiceIsRefusedWithItsName) {
+  gp_Trsf shift;
+  shift.SetTranslation(gp_Vec(5, 0, 0));
+  const Document document =
+      shapes::placed(BRepPrimAPI_MakeBox(1, 2, 3).Solid(), {gp_Trsf(), shift});
+  ReadOptions options;
+  options.convert = {4};
+  try {
+    document_model(document, options);
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_EQ(e.reason(),
+              "face:5 (plane) cannot be turned into a B-spline face: it belongs to the part 'bar', "
+              "which is used 2 times; an edit would change all of them");
+  }
+}
+
 TEST(DocumentModel, PlacedPartIsEditedInTheFrameOfTheAssembly) {
   gp_Trsf move;
   move.SetRotation(gp_Ax1(gp_Pnt(0, 0, 0), gp_Dir(1, 2, 3)), 0.7);

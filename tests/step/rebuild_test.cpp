@@ -168,7 +168,19 @@ TEST(Rebuild, PartsUsedTwiceAreRefused) {
     index_document(document);
   }
   const auto edits = pull(document, pole_of(document, 0, 2, 2), {0.05, 0.02, -0.03});
-  EXPECT_THAT(rebuild(document, edits), HasSubstr("used in 2 places"));
+  EXPECT_THAT(rebuild(document, edits),
+              HasSubstr("face:1: belongs to a part that is used 2 times"));
+}
+
+TEST(Rebuild, APartUsedSeveralTimesIsNamedAndCounted) {
+  gp_Trsf shift, further;
+  shift.SetTranslation(gp_Vec(10, 0, 0));
+  further.SetTranslation(gp_Vec(20, 0, 0));
+  Document document = shapes::placed(shapes::bicubic_cube(), {gp_Trsf(), shift, further});
+  const auto edits = pull(document, pole_of(document, 0, 2, 2), {0.05, 0.02, -0.03});
+  EXPECT_EQ(rebuild(document, edits),
+            "face:1: belongs to the part 'bar', which is used 3 times; an edit would change all of "
+            "them");
 }
 
 TEST(Rebuild, MovingOneSideOfAnEdgeIsRefused) {

@@ -33,20 +33,18 @@ void collect_edges(BrepTable& table) {
 
 namespace {
 
-// Editing one of several places would edit them all.
-void refuse_shared(FaceRecord& record, int places) {
+void refuse_shared(FaceRecord& record, int places, const PartNames& part_names) {
   if (places == 1) return;
-  record.shared = true;
-  if (record.surface.bspline) {
-    record.surface.surface.reset();
-    record.surface.refusal = "it belongs to a part that is used in " + std::to_string(places) +
-                             " places; an edit would change all of them";
-  }
+  record.shared = "it belongs to " + used_part(record.face, places, part_names);
+  record.surface.surface.reset();
+  std::string& refusal = record.surface.refusal;
+  refusal = record.surface.bspline ? record.shared : refusal + "; " + record.shared;
 }
 
 }  // namespace
 
-BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces) {
+BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces,
+                     const PartNames& part_names) {
   BrepTable table;
   table.shape = shape;
   Bnd_Box box;
@@ -62,7 +60,7 @@ BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape
     record.face = TopoDS::Face(faces(k));
     record.surface = face_surface(record.face);
     record.loops = face_loops(record.face);
-    refuse_shared(record, places[record.face.TShape().get()]);
+    refuse_shared(record, places[record.face.TShape().get()], part_names);
     if (!record.surface.geometry.IsNull()) {
       const double distance = kSideDistance * table.diagonal;
       record.trim = record.surface.surface

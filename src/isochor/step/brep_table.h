@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/step/document.h"
 #include "isochor/step/face_loops.h"
 #include "isochor/step/face_patches.h"
 #include "isochor/step/solid_model.h"
@@ -22,9 +23,9 @@ struct FaceRecord {
   TopoDS_Face face;
   FaceSurface surface;
   std::vector<FaceLoop> loops;
-  FaceTrim trim;        // of surface.geometry
-  bool shared = false;  // the same part in another place uses it too
-  int patch = -1;       // index into PatchModel::patches
+  FaceTrim trim;       // of surface.geometry
+  std::string shared;  // why its part, used several times, cannot be edited; else empty
+  int patch = -1;      // index into PatchModel::patches
   bool reversed() const { return face.Orientation() == TopAbs_REVERSED; }
 };
 
@@ -53,8 +54,10 @@ struct BrepTable {
   std::string label(int face) const;
 };
 
-// `faces`: the document's numbering. Patch numbers are left open.
-BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces);
+// `faces`: the document's numbering. Patch numbers are left open. `part_names`: the parts of an
+// assembly by the faces' TShapes, for messages.
+BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces,
+                     const PartNames& part_names = {});
 
 // Fills the tables' edges from the loops of its faces (part of brep_table; again after loops or
 // surfaces of faces were replaced).

@@ -129,7 +129,7 @@ bool has_circles(const std::string& kind) {
 Conversion convert_face(const FaceRecord& face, double diagonal) {
   if (face.surface.bspline) return {{}, "it is a B-spline face already"};
   if (face.surface.geometry.IsNull() || face.loops.empty()) return {{}, "it has no boundary"};
-  if (face.shared) return {{}, "it belongs to a part that is used in several places"};
+  if (!face.shared.empty()) return {{}, face.shared};
   if (!moved_rigidly(face.face)) return {{}, "its part is mirrored or scaled by an assembly"};
   const Bnd_Box2d curves = curve_box(face);
   if (curves.IsVoid() || curves.IsOpenXmin() || curves.IsOpenXmax())

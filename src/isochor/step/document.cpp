@@ -117,6 +117,28 @@ std::string label_name(const TDF_Label& label) {
   return text;
 }
 
+PartNames part_names(const Document& document) {
+  PartNames names;
+  if (document.xde.IsNull()) return names;
+  TDF_LabelSequence labels;
+  XCAFDoc_DocumentTool::ShapeTool(document.xde->Main())->GetShapes(labels);
+  for (TDF_LabelSequence::Iterator it(labels); it.More(); it.Next()) {
+    const std::string name = label_name(it.Value());
+    if (name.empty() || !XCAFDoc_ShapeTool::IsSimpleShape(it.Value())) continue;
+    if (XCAFDoc_ShapeTool::IsSubShape(it.Value())) continue;
+    TopTools_IndexedMapOfShape faces;
+    TopExp::MapShapes(XCAFDoc_ShapeTool::GetShape(it.Value()), TopAbs_FACE, faces);
+    for (int k = 1; k <= faces.Extent(); ++k) names.emplace(faces(k).TShape().get(), name);
+  }
+  return names;
+}
+
+std::string used_part(const TopoDS_Face& face, int places, const PartNames& names) {
+  const auto name = names.find(face.TShape().get());
+  return (name == names.end() ? "a part that" : "the part '" + name->second + "', which") +
+         " is used " + std::to_string(places) + " times; an edit would change all of them";
+}
+
 void index_document(Document& document) {
   if (!document.xde.IsNull()) {
     document.shape = free_shape(document);

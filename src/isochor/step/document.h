@@ -43,6 +43,13 @@ struct Document {
   std::string name_of(const TopoDS_Shape& shape) const;  // "" when it has none
 };
 
+// The name of the part that stores a face, by the face's TShape; only parts that have a name.
+using PartNames = std::unordered_map<const void*, std::string>;
+PartNames part_names(const Document& document);
+
+// "the part 'nut', which is used 8 times; an edit would change all of them".
+std::string used_part(const TopoDS_Face& face, int places, const PartNames& names);
+
 // Reads a file. Throws InputError when it is missing, empty, cannot be parsed, or has no shape.
 Document load_document(const std::string& path);
 

@@ -120,7 +120,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   model.schema = document.schema;
   model.notices = document.notices;
   model.facts = shape_facts(document, false);  // integrals follow, face by face
-  BrepTable table = brep_table(document.shape, document.faces);
+  BrepTable table = brep_table(document.shape, document.faces, part_names(document));
   convert(table, options.convert, document.path);
   for (const EdgeRecord& edge : table.edges) model.edges.push_back(measure_edge(table, edge));
   model.patches = patch_model(table, model.edges);

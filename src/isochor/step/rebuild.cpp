@@ -59,8 +59,8 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
     const TopoDS_Face face = document.face(edited.face);
     const int places = places_of(face, document);
     if (places != 1) {
-      return handle_of(edited.face) + ": belongs to a part that is used in " +
-             std::to_string(places) + " places; an edit would change all of them";
+      return handle_of(edited.face) + ": belongs to " +
+             used_part(face, places, part_names(document));
     }
     bool found = false;
     for (auto& part : parts) {
@@ -89,7 +89,7 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
 std::string convert_all(const Document& document, const std::vector<int>& convert,
                         std::map<int, Surface>& converted) {
   if (convert.empty()) return "";
-  BrepTable table = brep_table(document.shape, document.faces);
+  BrepTable table = brep_table(document.shape, document.faces, part_names(document));
   const std::string refusal = convert_faces(table, convert);
   if (!refusal.empty()) return refusal;
   for (int f : convert) {
