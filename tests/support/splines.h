@@ -1,6 +1,7 @@
 // Random knot vectors and surfaces for tests; every generator takes its own seeded engine.
 #pragma once
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -110,6 +111,21 @@ inline std::vector<double> sample_parameters(const KnotVector& knots, int per_sp
     }
   }
   return values;
+}
+
+// Every knot vector of this degree with `count` knots that are whole numbers from 0 to `top`: all
+// multiplicities, clamped and unclamped, also with functions that vanish on the whole domain.
+inline std::vector<KnotVector> all_small_knots(int degree, int count, int top = 3) {
+  std::vector<KnotVector> all;
+  std::vector<double> knots(static_cast<size_t>(count), 0.0);
+  for (;;) {
+    if (KnotVector::defect(degree, knots).empty()) all.emplace_back(degree, knots);
+    // The next ascending sequence: raise the last knot that can be raised, level those after it.
+    size_t i = knots.size();
+    while (i > 0 && knots[i - 1] == top) --i;
+    if (i == 0) return all;
+    std::fill(knots.begin() + static_cast<long>(i) - 1, knots.end(), knots[i - 1] + 1.0);
+  }
 }
 
 }  // namespace isochor::testing

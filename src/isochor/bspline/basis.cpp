@@ -11,6 +11,7 @@ BasisValues evaluate_basis(const KnotVector& knots, double u, int order) {
 BasisValues evaluate_basis_on_span(const KnotVector& knots, int span, double u, int order) {
   ISOCHOR_REQUIRE(0 <= order && order <= BasisValues::kMaxOrder, order);
   ISOCHOR_REQUIRE(knots.degree() <= span && span < knots.size(), span);
+  ISOCHOR_REQUIRE(knots[span] < knots[span + 1], span, knots[span]);
   const int d = knots.degree();
   BasisValues result;
   result.first = span - d;

@@ -28,7 +28,8 @@ class BasisValues {
 // Error: a few d * eps relative in each value (all terms of the recursion are non-negative).
 BasisValues evaluate_basis(const KnotVector& knots, double u, int order = 0);
 
-// The same on a chosen non-empty span (a one-sided derivative at a knot).
+// The same on a chosen span (a one-sided derivative at a knot).
+// PreconditionError when the span is outside the domain or empty.
 BasisValues evaluate_basis_on_span(const KnotVector& knots, int span, double u, int order = 0);
 
 }  // namespace isochor

@@ -70,6 +70,7 @@ KnotVector::KnotVector(int degree, std::vector<double> knots) {
 
 KnotVector KnotVector::clamped(int degree, const std::vector<double>& breaks) {
   ISOCHOR_REQUIRE(breaks.size() >= 2, breaks.size());
+  ISOCHOR_REQUIRE(1 <= degree && degree <= kMaxDegree, defect(degree, breaks));
   const auto ends = static_cast<size_t>(degree);
   std::vector<double> knots(ends, breaks.front());
   knots.insert(knots.end(), breaks.begin(), breaks.end());
