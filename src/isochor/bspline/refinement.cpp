@@ -364,6 +364,7 @@ BandedMap wrapped_insertion_map(const KnotVector& coarse, const KnotVector& fine
   EndlessKnots fine_ideal = endless(fine);
   fine_ideal.origin = coarse_ideal.origin;
   const int period = static_cast<int>(coarse_ideal.period.size());
+  const auto fine_period = fine_ideal.period.size();
   // Enough turns of the coarse knots on both sides for every fine function.
   const int margin = (d / period + 2) * period;
   std::vector<double> extended;
@@ -373,6 +374,11 @@ BandedMap wrapped_insertion_map(const KnotVector& coarse, const KnotVector& fine
   std::vector<BandedMap::RowData> rows;
   std::vector<double> arguments(static_cast<size_t>(d) + 1);
   for (int i = 0; i < fine.size(); ++i) {
+    if (rows.size() >= fine_period) {
+      // A period further on the knots are the same but for rounding: the same row to the last bit.
+      rows.push_back(rows[rows.size() - fine_period]);
+      continue;
+    }
     for (int k = 0; k <= d; ++k) arguments[static_cast<size_t>(k)] = fine_ideal.at(i + k);
     const int mu = knot_index(extended, arguments[0]);
     BandedMap::RowData row = oslo_row(extended, d, mu, arguments.data());
