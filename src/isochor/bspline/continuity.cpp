@@ -197,10 +197,15 @@ int protected_order(Smoothness measured, int degree) {
 
 int boundary_rows(const KnotVector& across, bool begin_side, int order) {
   // Near the end, function k vanishes to order k - 1 once it starts at the end itself; the first
-  // degree - multiplicity + 1 functions start before it and do not vanish.
+  // degree - multiplicity + 1 functions start before it and do not vanish. Unclamped knots that
+  // repeat the end beyond the domain's own copy have functions before those, which vanish on the
+  // whole domain.
+  const int d = across.degree();
   const double end = begin_side ? across.begin() : across.end();
-  const int start_before = across.degree() - std::min(across.multiplicity(end), across.degree());
-  return std::max(start_before, order) + 1;
+  const int idle =
+      begin_side ? across.spans().front() - d : across.size() - 1 - across.spans().back();
+  const int start_before = d - std::min(across.multiplicity(end), d);
+  return idle + std::max(start_before, order) + 1;
 }
 
 std::vector<int> functions_rough_at(const KnotVector& knots, double knot, int order) {
