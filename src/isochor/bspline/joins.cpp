@@ -54,10 +54,11 @@ class SideCurve {
                        v.end() - v.begin());
   }
 
-  // The parameter for the share r in [0, 1] of the domain; lands exactly on a knot that is within
-  // rounding, so that one-sided limits pick the intended span.
-  double parameter(double r) const {
-    const double t = knots().begin() + r * length();
+  // The parameter for the share r in [0, 1] of the domain.
+  double parameter(double r) const { return on_knot(knots().begin() + r * length()); }
+
+  // The knot that is within rounding of t, so that one-sided limits pick the intended span; else t.
+  double on_knot(double t) const {
     for (double knot : knots().breaks()) {
       if (std::abs(t - knot) <= kSameSide * length()) return knot;
     }
@@ -72,49 +73,70 @@ class SideCurve {
   Limit fixed_limit_ = Limit::kFromAbove;
 };
 
-// Finds the parameter of a curve's point nearest to a given one: samples, then Newton.
+// Finds the parameter of a curve's point nearest to a given one: samples, then Newton inside the
+// spans on both sides of the nearest one. A step never crosses a knot: beyond a crease the tangent
+// is another one.
 class NearestOnCurve {
  public:
   explicit NearestOnCurve(const SideCurve& curve) : curve_(curve) {
     const KnotVector& knots = curve.knots();
     const int per_span = 2 * knots.degree() + 2;
-    add(knots.begin());
     for (int k : knots.spans()) {
-      for (int i = 1; i <= per_span; ++i) add(knots[k] + (knots[k + 1] - knots[k]) * i / per_span);
+      if (samples_.empty()) add(knots.begin(), k);
+      for (int i = 1; i < per_span; ++i) {
+        add(knots[k] + (knots[k + 1] - knots[k]) * i / per_span, k);
+      }
+      add(knots[k + 1], k);
     }
   }
 
   double parameter(const Vec3& p) const {
-    const KnotVector& knots = curve_.knots();
-    double best = at_.front();
-    double best_distance = (points_.front() - p).norm();
-    for (size_t i = 1; i < at_.size(); ++i) {
-      const double distance = (points_[i] - p).norm();
-      if (distance < best_distance) best_distance = distance, best = at_[i];
+    size_t nearest = 0;
+    Candidate best{samples_[0].t, (samples_[0].point - p).norm()};
+    for (size_t i = 1; i < samples_.size(); ++i) {
+      const double distance = (samples_[i].point - p).norm();
+      if (distance < best.distance) best = {samples_[i].t, distance}, nearest = i;
     }
+    const Candidate start = best;
+    const size_t after = std::min(nearest + 1, samples_.size() - 1);
+    for (int span : {samples_[nearest].span, samples_[after].span}) {
+      const Candidate found = descend(p, span, start);
+      if (found.distance < best.distance) best = found;
+    }
+    return curve_.on_knot(best.t);
+  }
+
+ private:
+  struct Sample {
+    double t;
+    Vec3 point;
+    int span;  // that ends here or goes on here
+  };
+  struct Candidate {
+    double t, distance;
+  };
+
+  void add(double t, int span) { samples_.push_back({t, curve_.point(t), span}); }
+
+  Candidate descend(const Vec3& p, int span, Candidate best) const {
+    const double low = curve_.knots()[span];
+    const double high = curve_.knots()[span + 1];
     for (int step = 0; step < 20; ++step) {
-      const SurfaceDerivatives d = curve_.at(best, 1, Limit::kFromAbove);
+      const SurfaceDerivatives d =
+          curve_.at(best.t, 1, best.t < high ? Limit::kFromAbove : Limit::kFromBelow);
       const Vec3 tangent = curve_.tangent(d);
       const double speed2 = tangent.squaredNorm();
       if (!(speed2 > 0.0)) break;
-      const double next =
-          std::clamp(best + (p - d.s).dot(tangent) / speed2, knots.begin(), knots.end());
+      const double next = std::clamp(best.t + (p - d.s).dot(tangent) / speed2, low, high);
       const double distance = (curve_.point(next) - p).norm();
-      if (!(distance < best_distance)) break;
-      best = next;
-      best_distance = distance;
+      if (!(distance < best.distance)) break;
+      best = {next, distance};
     }
     return best;
   }
 
- private:
-  void add(double t) {
-    at_.push_back(t);
-    points_.push_back(curve_.point(t));
-  }
   const SideCurve& curve_;
-  std::vector<double> at_;
-  std::vector<Vec3> points_;
+  std::vector<Sample> samples_;
 };
 
 struct SamplePair {
