@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <sstream>
 
 #include "isochor/base/error.h"
 
@@ -33,9 +34,11 @@ void validate_patch(const Patch& patch, size_t point_count) {
                      std::to_string(patch.weights.size()) + " weights do not fit the poles");
   }
   for (double w : patch.weights) {
-    if (!(w > 0.0) || !std::isfinite(w)) {
-      throw InputError("", label(patch), "weight " + std::to_string(w) + " is not positive");
-    }
+    if (w > 0.0 && std::isfinite(w)) continue;
+    std::ostringstream text;
+    text.precision(17);
+    text << "weight " << w << (w > 0.0 ? " is not finite" : " is not positive");
+    throw InputError("", label(patch), text.str());
   }
 }
 
