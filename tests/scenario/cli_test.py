@@ -1,0 +1,289 @@
+#!/usr/bin/env python3
+"""The command line as scripts meet it: the shape of the JSON, exit codes, which files appear.
+
+usage: cli_test.py ISOCHOR SOURCE_FOLDER WORK_FOLDER [unittest options]
+"""
+import json
+import math
+import pathlib
+import shutil
+import struct
+import subprocess
+import sys
+import unittest
+
+ISOCHOR, SOURCE, WORK = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+CUBE = SOURCE / "data/step/cube.isochor.json"
+HULL = SOURCE / "data/step/hull.step"
+PULL = SOURCE / "data/edits/cube_figure4.json"
+
+
+def isochor(*words):
+    return subprocess.run([ISOCHOR, *map(str, words)], cwd=WORK, capture_output=True, text=True,
+                          timeout=120)
+
+
+class Scenario(unittest.TestCase):
+    def setUp(self):
+        """An empty folder."""
+        shutil.rmtree(WORK, ignore_errors=True)
+        WORK.mkdir(parents=True)
+
+    def run_json(self, *words, code=0):
+        """The one JSON value on standard output."""
+        done = isochor(*words, "--json")
+        self.assertEqual(done.returncode, code, done.stderr)
+        return json.loads(done.stdout)
+
+    def expect(self, code, *words, says="", leaves=()):
+        """Exit code, a text on standard error, and exactly these files in the folder."""
+        before = {p.name for p in WORK.iterdir()}
+        done = isochor(*words)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(says, done.stderr)
+        if code > 1:
+            self.assertEqual(done.stdout, "")
+        self.assertEqual({p.name for p in WORK.iterdir()} - before, set(leaves))
+
+    def open_cube(self):
+        model = json.loads(CUBE.read_text())
+        model["patches"].pop()
+        (WORK / "open.isochor.json").write_text(json.dumps(model))
+        return "open.isochor.json"
+
+    def pulled(self):
+        self.assertEqual(isochor("edit", CUBE, PULL, "-o", "pulled.isochor.json").returncode, 0)
+        return "pulled.isochor.json"
+
+
+class Info(Scenario):
+    def test_patches_and_joins_of_a_patch_model(self):
+        info = self.run_json("info", CUBE)
+        self.assertEqual([p["name"] for p in info["patches"]],
+                         ["top", "bottom", "front", "back", "left", "right"])
+        self.assertEqual([p["handle"] for p in info["patches"]],
+                         [f"face:{k}" for k in range(1, 7)])
+        for k, patch in enumerate(info["patches"]):
+            self.assertEqual((patch["degree"], patch["poles"], patch["free_poles"]),
+                             ([3, 3], [15, 15], 225))
+            self.assertEqual(patch["rows"], [225 * k, 225 * k + 224])
+        self.assertEqual(len(info["joins"]), 12)
+        self.assertEqual({join["continuity"] for join in info["joins"]}, {"C0"})
+        self.assertEqual((info["unit"], info["closed"]), ("m", True))
+        self.assertLessEqual(abs(info["volume"] - 1), info["bound"])
+
+    def test_faces_of_a_solid_with_locks_and_reasons(self):
+        info = self.run_json("info", HULL)
+        self.assertEqual([f["name"] for f in info["faces"]], ["starboard", "port", "transom", "deck"])
+        self.assertEqual([f["editable"] for f in info["faces"]], [True] * 2 + [False] * 2)
+        self.assertEqual([f["convertible"] for f in info["faces"]], [False] * 2 + [True] * 2)
+        self.assertTrue(info["valid"] and info["closed"])
+        for patch in info["patches"]:
+            held = sum(lock["poles"] for lock in patch["locked"])
+            self.assertTrue(all(lock["reason"] for lock in patch["locked"]))
+            count = math.prod(patch["poles"])
+            self.assertLess(patch["free_poles"], count)
+            self.assertGreaterEqual(patch["free_poles"] + held, count)
+        self.assertEqual([p["reversed"] for p in info["patches"]], [False, True])
+
+
+class Volume(Scenario):
+    def test_value_bound_and_rational_number(self):
+        plain = self.run_json("volume", CUBE)
+        self.assertEqual(set(plain), {"volume", "bound", "exact"})
+        self.assertIsNone(plain["exact"])
+        self.assertLessEqual(abs(plain["volume"] - 1), plain["bound"])
+        self.assertEqual(self.run_json("volume", CUBE, "--exact")["exact"], "1")
+        self.assertIn("exact: 1\n", isochor("volume", CUBE, "--exact").stdout)
+
+    def test_gradient_has_a_row_a_point_and_no_net_push(self):
+        self.run_json("volume", CUBE, "--gradient", "gradient.json")
+        rows = json.loads((WORK / "gradient.json").read_text())
+        points = json.loads(CUBE.read_text())["points"]
+        self.assertEqual(len(rows), len(points))
+        for axis in range(3):  # a closed model does not feel translations; scaling gives V per axis
+            self.assertLess(abs(math.fsum(row[axis] for row in rows)), 1e-14)
+            scaled = math.fsum(row[axis] * point[axis] for row, point in zip(rows, points))
+            self.assertAlmostEqual(scaled, 1, delta=1e-13)
+
+    def test_open_models_need_the_word(self):
+        model = self.open_cube()
+        self.expect(1, "volume", model, says="--open")
+        self.expect(1, "volume", model, "--gradient", "gradient.json", says="open")
+        self.assertAlmostEqual(self.run_json("volume", model, "--open")["volume"], 1, delta=1e-12)
+
+    def test_models_that_are_not_polynomial_patches_have_no_rational_volume(self):
+        self.expect(3, "volume", HULL, "--exact", "--json", says="omit --exact")
+
+
+class SuggestAndEdit(Scenario):
+    def test_a_suggestion_runs_as_it_is(self):
+        self.assertEqual(self.run_json("suggest", CUBE, "-o", "edits.json"),
+                         {"outcome": "done", "edits": "edits.json"})
+        written = (WORK / "edits.json").read_text()
+        self.assertEqual(json.loads(isochor("suggest", CUBE).stdout), json.loads(written))
+        edits = json.loads(written)
+        self.assertEqual((edits["isochor_edits"], edits["defaults"]), (1, 1))
+        report = self.run_json("edit", CUBE, "edits.json", "-o", "out.isochor.json")
+        self.assertEqual((report["isochor_report"], report["outcome"]), (1, "done"))
+        self.assertTrue((WORK / "out.isochor.json").exists())
+
+    def test_report_has_the_promised_entries(self):
+        self.expect(0, "edit", CUBE, PULL, "-o", "out.isochor.json", "--report", "report.json",
+                    leaves={"out.isochor.json", "report.json"})
+        edit, = json.loads((WORK / "report.json").read_text())["edits"]
+        self.assertLessEqual({"before", "after", "relative_change", "bound"}, set(edit["volume"]))
+        move, = edit["moves"]
+        self.assertLessEqual({"asked", "got", "error"}, set(move))
+        self.assertEqual(move["asked"], [0.2, 0.2, 0.9])
+        for key, entries in {"joins": {"count", "max_gap", "max_angle_rad"},
+                             "constraints": {"rows", "rank", "redundant", "conflicting",
+                                             "freedom_left"},
+                             "moved": {"coefficients", "poles", "max_distance"},
+                             "energy": {"before", "after"}}.items():
+            self.assertLessEqual(entries, set(edit[key]), key)
+        self.assertEqual(edit["joins"]["max_gap"], 0)
+        self.assertEqual(edit["resolved"]["continuity"], "measured")
+
+    def test_a_refusal_writes_the_report_only(self):
+        edits = json.loads(PULL.read_text())
+        edits["edits"][0]["extent"] = {"radius": 1e-9}
+        (WORK / "none.json").write_text(json.dumps(edits))
+        self.expect(1, "edit", CUBE, "none.json", "-o", "out.isochor.json", "--report", "report.json",
+                    "--picture", "picture.png", says="no free coefficient", leaves={"report.json"})
+        report = json.loads((WORK / "report.json").read_text())
+        self.assertIn(report["outcome"], ("refused", "infeasible"))
+        self.assertTrue(report["edits"][-1]["reason"])
+
+    def test_formats_that_cannot_be_written_leave_nothing(self):
+        self.expect(3, "edit", CUBE, PULL, "-o", "out.stl", says="cannot write this format")
+        self.expect(3, "edit", CUBE, PULL, "-o", "nowhere/out.isochor.json", says="nowhere")
+
+
+class Check(Scenario):
+    def test_valid_and_open(self):
+        check = self.run_json("check", CUBE)
+        self.assertLessEqual({"valid", "findings", "closed", "max_gap", "max_tolerance", "volume",
+                              "bound"}, set(check))
+        self.assertEqual((check["valid"], check["findings"], check["max_gap"]), (True, [], 0))
+        check = self.run_json("check", self.open_cube(), code=1)
+        self.assertEqual((check["valid"], check["closed"], check["volume"]), (False, False, None))
+        self.assertEqual(len(check["findings"]), 4)
+
+    def test_against_tells_the_faces_apart_and_keeps_the_exit_code(self):
+        against = self.run_json("check", self.pulled(), "--against", CUBE)["against"]
+        self.assertEqual([face["handle"] for face in against], [f"face:{k}" for k in range(1, 7)])
+        before, after = (json.loads(path.read_text())
+                         for path in (CUBE, WORK / "pulled.isochor.json"))
+        for face, patch in zip(against, before["patches"]):
+            pairs = [(before["points"][i], after["points"][i]) for row in patch["poles"] for i in row]
+            self.assertEqual(face["moved_poles"], sum(a != b for a, b in pairs), face["name"])
+            self.assertAlmostEqual(face["max_distance"], max(math.dist(*pair) for pair in pairs),
+                                   delta=1e-15)
+        self.assertEqual(against[1]["text"], "the same bit for bit")
+
+    def test_against_something_else_says_so(self):
+        against = self.run_json("check", CUBE, "--against", HULL)["against"]
+        self.assertEqual(against[0]["text"], "15 x 15 poles instead of 27 x 15")
+        self.assertEqual(against[2]["text"], "not a B-spline face in the original")
+
+
+class Convert(Scenario):
+    def test_there_and_back_through_step_keeps_every_bit(self):
+        self.assertEqual(self.run_json("convert", self.pulled(), "cube.step"),
+                         {"outcome": "done", "output": "cube.step", "notices": []})
+        back = self.run_json("convert", "cube.step", "back.isochor.json")
+        self.assertTrue(back["notices"])
+        first, second = (json.loads((WORK / name).read_text())
+                         for name in ("pulled.isochor.json", "back.isochor.json"))
+        self.assertEqual(first["unit"], second["unit"])
+        written = {patch["name"]: patch for patch in second["patches"]}
+        self.assertEqual(len(written), len(first["patches"]))
+        for a in first["patches"]:
+            b = written[a["name"]]
+            self.assertEqual((a["degree"], a["knots"]), (b["degree"], b["knots"]))
+            for row, other in zip(a["poles"], b["poles"], strict=True):
+                self.assertEqual([first["points"][i] for i in row],
+                                 [second["points"][i] for i in other])
+
+    def test_iges_and_brep_keep_the_volume(self):
+        for name in ("hull.igs", "hull.brep"):
+            told = self.run_json("convert", HULL, name)
+            self.assertTrue(told["notices"], name)  # what the format cannot hold
+            volume = self.run_json("volume", name)
+            self.assertAlmostEqual(volume["volume"], 759.33440637659101, delta=1e-9)
+
+    def test_triangles_say_that_they_approximate(self):
+        for name in ("cube.stl", "cube.obj", "cube.glb"):
+            self.expect(0, "convert", CUBE, name, says="not exact", leaves={name})
+        self.assertEqual((WORK / "cube.glb").read_bytes()[:4], b"glTF")
+        stl = (WORK / "cube.stl").read_bytes()
+        count, = struct.unpack("<I", stl[80:84])
+        self.assertEqual(len(stl), 84 + 50 * count)
+        obj = (WORK / "cube.obj").read_text().splitlines()
+        self.assertTrue(any(line.startswith("f ") for line in obj))
+
+    def test_what_a_format_cannot_hold_is_refused(self):
+        self.expect(3, "convert", HULL, "hull.isochor.json", says="face:3 (plane)")
+        self.expect(3, "convert", CUBE, "cube.xyz", says="cannot be written")
+        self.expect(3, "convert", CUBE, "nowhere/cube.step", says="'nowhere' does not exist")
+
+
+class Render(Scenario):
+    def png_size(self, name):
+        data = (WORK / name).read_bytes()
+        self.assertEqual(data[:8], b"\x89PNG\r\n\x1a\n")
+        self.assertEqual(data[-8:-4], b"IEND")
+        return struct.unpack(">II", data[16:24])
+
+    def test_picture_and_deviation(self):
+        model = self.pulled()
+        self.assertEqual(self.run_json("render", model, "-o", "a.png"),
+                         {"outcome": "done", "picture": "a.png"})
+        done = isochor("render", model, "-o", "b.png", "--compare", CUBE)
+        self.assertIn("deviation from", done.stdout)
+        for name in ("a.png", "b.png"):
+            self.assertGreaterEqual(min(self.png_size(name)), 400)
+        self.assertNotEqual((WORK / "a.png").read_bytes(), (WORK / "b.png").read_bytes())
+
+    def test_same_model_same_bits(self):
+        for name in ("a.png", "b.png"):
+            self.expect(0, "render", CUBE, "-o", name, "-j", 1 if name == "a.png" else 2,
+                        leaves={name})
+        self.assertEqual((WORK / "a.png").read_bytes(), (WORK / "b.png").read_bytes())
+
+    def test_nowhere_to_write(self):
+        self.expect(3, "render", CUBE, "-o", "nowhere/a.png", says="nowhere")
+
+
+class Usage(Scenario):
+    def test_wrong_words_are_exit_code_2(self):
+        for words in ([], ["draw", CUBE], ["info"], ["info", CUBE, HULL], ["edit", CUBE, PULL],
+                      ["render", CUBE], ["convert", CUBE], ["info", CUBE, "-j", 0],
+                      ["check", CUBE, "--against"], ["suggest", CUBE, "--gradient", "g"],
+                      ["info", CUBE, "--progress", "sometimes"]):
+            self.expect(2, *words)
+
+    def test_missing_files_are_exit_code_3(self):
+        for command in ("info", "volume", "suggest", "check"):
+            self.expect(3, command, "nowhere.step", says="nowhere.step")
+        self.expect(3, "render", "nowhere.step", "-o", "a.png", says="nowhere.step")
+        self.expect(3, "convert", "nowhere.step", "a.brep", says="nowhere.step")
+        self.expect(3, "check", CUBE, "--against", "nowhere.step", "--json", says="nowhere.step")
+
+    def test_quiet_is_silent(self):
+        for words in (["info", CUBE], ["check", CUBE], ["suggest", CUBE, "-o", "edits.json"],
+                      ["edit", CUBE, PULL, "-o", "out.isochor.json"]):
+            done = isochor(*words, "-q")
+            self.assertEqual((done.returncode, done.stdout, done.stderr), (0, "", ""), words)
+
+    def test_help_and_version(self):
+        self.assertRegex(isochor("--version").stdout, r"^isochor \d+\.\d+\.\d+\n$")
+        for command in ("info", "volume", "suggest", "edit", "check", "convert", "render"):
+            done = isochor(command, "--help")
+            self.assertEqual(done.returncode, 0)
+            self.assertIn("--json", done.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])
