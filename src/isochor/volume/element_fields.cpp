@@ -3,7 +3,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "isochor/base/error.h"
+
 namespace isochor::internal {
+
+void require_poles(const Patch& patch, size_t point_count) {
+  const auto expected = static_cast<size_t>(patch.u_size()) * static_cast<size_t>(patch.v_size());
+  ISOCHOR_REQUIRE(patch.points.size() == expected, patch.handle, patch.points.size(), expected);
+  ISOCHOR_REQUIRE(patch.weights.empty() || patch.weights.size() == expected, patch.handle,
+                  patch.weights.size(), expected);
+  for (int id : patch.points) {
+    ISOCHOR_REQUIRE(0 <= id && static_cast<size_t>(id) < point_count, patch.handle, id,
+                    point_count);
+  }
+}
 
 ElementFields::ElementFields(const PatchForm& patch, bool sizes)
     : patch_(&patch),

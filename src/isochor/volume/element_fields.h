@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "isochor/base/vec3.h"
+#include "isochor/bspline/patch_model.h"
 #include "isochor/volume/element_kernel.h"
 
 namespace isochor::internal {
@@ -23,6 +24,10 @@ struct PatchForm {
   int v_size() const { return v->knots().size(); }
   bool rational() const { return !weights.empty(); }
 };
+
+// PreconditionError when the patch's points or weights do not fit its knots, or an index is not in
+// a table of `point_count` points.
+void require_poles(const Patch& patch, size_t point_count);
 
 using VectorGrid = std::array<Grid, 3>;  // one grid for each coordinate
 

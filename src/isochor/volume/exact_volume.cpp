@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "isochor/base/error.h"
+#include "isochor/volume/element_fields.h"
 #include "isochor/volume/span_polynomials.h"
 
 namespace isochor {
@@ -52,6 +53,7 @@ struct Dyadic {
 
 Dyadic decompose(double x) {
   if (x == 0.0) return {};
+  ISOCHOR_REQUIRE(std::isfinite(x), x);
   int exponent = 0;
   auto mantissa = static_cast<long>(std::ldexp(std::frexp(x, &exponent), kMantissaBits));
   exponent -= kMantissaBits;
@@ -289,6 +291,7 @@ ExactVolume::ExactVolume(const PatchModel& model) {
     return tables.back();
   };
   for (const Patch& patch : model.patches) {
+    internal::require_poles(patch, model.points.size());
     ExactPatch entry;
     const auto& w = patch.weights;
     entry.polynomial = std::all_of(w.begin(), w.end(), [&](double each) { return each == w[0]; });

@@ -11,7 +11,8 @@
 // evaluated on integers over one common denominator.
 //
 // Patches whose weights are all equal count as polynomial. A patch with other weights has no
-// rational volume; functions that would need it throw InputError naming it.
+// rational volume; functions that would need it throw InputError naming it. Coordinates that are
+// not finite, and tables that do not fit the model, are the caller's bug (PreconditionError).
 #pragma once
 
 #include <array>

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "isochor/base/error.h"
+#include "isochor/volume/element_fields.h"
 #include "isochor/volume/span_table.h"
 
 namespace isochor {
@@ -37,8 +38,10 @@ void contract_around(const Patch& patch, const ThetaTensor& u, const ThetaTensor
 }
 
 template <typename Visit>
-void for_each_term(const PatchModel& model, const Visit& visit) {
+void for_each_term(const PatchModel& model, const std::vector<Vec3>& points, const Visit& visit) {
+  ISOCHOR_REQUIRE(points.size() == model.points.size(), points.size(), model.points.size());
   for (const Patch& patch : model.patches) {
+    internal::require_poles(patch, points.size());
     ISOCHOR_REQUIRE(patch.weights.empty(), patch.handle);
     const ThetaTensor u(patch.u_knots);
     const ThetaTensor v(patch.v_knots);
@@ -81,7 +84,7 @@ ThetaTensor::ThetaTensor(const KnotVector& knots)
 
 double theta_volume(const PatchModel& model, const std::vector<Vec3>& points) {
   double sum = 0.0;
-  for_each_term(model, [&](int i, int j, int k, double c) {
+  for_each_term(model, points, [&](int i, int j, int k, double c) {
     sum += c * points[static_cast<size_t>(i)].x() * points[static_cast<size_t>(j)].y() *
            points[static_cast<size_t>(k)].z();
   });
@@ -90,7 +93,7 @@ double theta_volume(const PatchModel& model, const std::vector<Vec3>& points) {
 
 std::vector<Vec3> theta_gradient(const PatchModel& model, const std::vector<Vec3>& points) {
   std::vector<Vec3> rows(points.size(), Vec3::Zero());
-  for_each_term(model, [&](int i, int j, int k, double c) {
+  for_each_term(model, points, [&](int i, int j, int k, double c) {
     const double x = points[static_cast<size_t>(i)].x();
     const double y = points[static_cast<size_t>(j)].y();
     const double z = points[static_cast<size_t>(k)].z();

@@ -134,11 +134,11 @@ VolumeForm::VolumeForm(const PatchModel& model) {
   TableCache tables;
   for (size_t q = 0; q < model.patches.size(); ++q) {
     const Patch& patch = model.patches[q];
+    internal::require_poles(patch, model.points.size());
     for (int i = 0; i < patch.u_size(); ++i) {
       for (int j = 0; j < patch.v_size(); ++j) {
-        const int id = patch.point(i, j);
-        ISOCHOR_REQUIRE(0 <= id && static_cast<size_t>(id) < model.points.size(), id);
-        data->uses[static_cast<size_t>(id)].push_back({static_cast<int>(q), i, j});
+        const auto id = static_cast<size_t>(patch.point(i, j));
+        data->uses[id].push_back({static_cast<int>(q), i, j});
       }
     }
     PatchForm form = polynomial_form(patch, tables);
