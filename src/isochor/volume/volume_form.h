@@ -113,9 +113,9 @@ class VolumeForm {
 
   // The same with bounds. Polynomial patches: a proven bound on the distance to the exact volume
   // (change) of these very points. Patches with weights: a rounding bound (not proven in all its
-  // constants) plus the distance to the next finer rule, an estimate of the quadrature error that
-  // is reliable because convergence is geometric. Cost: twice that of the value; with weights, four
-  // times.
+  // constants) plus twice the distance to the next finer rule, an estimate of the quadrature error
+  // that is reliable because convergence is geometric. Cost: twice that of the value; with weights,
+  // four times.
   Bounded bounded_value(const std::vector<Vec3>& points) const;
   Bounded bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                          const Support& support) const;
