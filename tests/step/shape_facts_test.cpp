@@ -2,16 +2,19 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <BRepBuilderAPI_MakePolygon.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom_BSplineSurface.hxx>
+#include <Geom_Plane.hxx>
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
 #include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
+#include <gp_Pln.hxx>
 
 #include "isochor/step/checks.h"
 #include "isochor/step/gaps.h"
@@ -86,6 +89,19 @@ TEST(ShapeFacts, AnEdgeOfThreeFacesIsMultiple) {
   const auto facts = shape_facts(shell);
   EXPECT_EQ(facts.multiple_edges, 4);
   EXPECT_FALSE(facts.closed);
+}
+
+TEST(ShapeFacts, AnOutlineThatIsNotClosedIsTheOneDefectOfItsFace) {
+  const TopoDS_Shape open = BRepBuilderAPI_MakePolygon(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0),
+                                                       gp_Pnt(1, 1, 0), gp_Pnt(0, 1, 0), false)
+                                .Wire();
+  BRep_Builder builder;
+  TopoDS_Face face;
+  builder.MakeFace(face, new Geom_Plane(gp_Pln()), 1e-7);
+  builder.Add(face, open);
+  const auto facts = shape_facts(face);
+  EXPECT_FALSE(facts.valid);
+  EXPECT_THAT(facts.defects, ::testing::ElementsAre("face:1: outline: not closed"));
 }
 
 TEST(ShapeFacts, DefectsNameTheFace) {

@@ -53,12 +53,16 @@ class DefectList {
     TopExp::MapShapes(shape, TopAbs_FACE, faces);
     for (int k = 1; k <= faces.Extent(); ++k) {
       const std::string where = "face:" + std::to_string(k);
-      add(faces(k), where);
+      const size_t others = found_.size();
       for (const auto kind : {TopAbs_WIRE, TopAbs_EDGE, TopAbs_VERTEX}) {
         for (TopExp_Explorer it(faces(k), kind); it.More(); it.Next()) {
           add(it.Current(), where);
         }
       }
+      // A face whose outline is bad is called unorientable besides; the outline is the news.
+      outline_is_bad_ = found_.size() > others;
+      add(faces(k), where);
+      outline_is_bad_ = false;
     }
     for (const auto kind : {TopAbs_SHELL, TopAbs_SOLID}) {
       for (TopExp_Explorer it(shape, kind); it.More(); it.Next()) {
@@ -92,10 +96,13 @@ class DefectList {
            const std::string& where) {
     for (BRepCheck_ListIteratorOfListOfStatus it(statuses); it.More(); it.Next()) {
       if (it.Value() == BRepCheck_NoError) continue;
+      if (it.Value() == BRepCheck_UnorientableShape && outline_is_bad_) continue;
       static constexpr const char* kParts[] = {"compound", "compound", "solid", "shell",
-                                               "face",     "wire",     "edge",  "vertex"};
-      const std::string text =
-          where + ": " + kParts[part.ShapeType()] + ": " + words_of(it.Value());
+                                               "face",     "outline",  "edge",  "vertex"};
+      const std::string kind = kParts[part.ShapeType()];
+      // "face:1: edge: ...", but not "face:1: face: ...".
+      const bool itself = part.ShapeType() <= TopAbs_FACE;
+      const std::string text = where + ": " + (itself ? "" : kind + ": ") + words_of(it.Value());
       if (seen_.insert(text).second) found_.push_back(text);
     }
   }
@@ -103,6 +110,7 @@ class DefectList {
   const BRepCheck_Analyzer& analyser_;
   std::vector<std::string> found_;
   std::set<std::string> seen_;
+  bool outline_is_bad_ = false;
 };
 
 // How often the faces of one shell use each edge, in either sense.
