@@ -204,5 +204,25 @@ TEST(Checks, EachPromiseIsWatchedAfterReading) {
   EXPECT_EQ(internal::objection_to_reread(before, nameless, false), "");
 }
 
+TEST(Checks, GapsThatAReaderFindsAnewMustStayInsideTheTolerance) {
+  const ShapeFacts before = good();
+  const auto growth = [&](double edge, double vertex) {
+    ShapeFacts reread = before;
+    reread.max_edge_gap = edge;
+    reread.max_vertex_gap = vertex;
+    return internal::gap_growth(before, reread);
+  };
+  EXPECT_EQ(growth(1e-9, 1e-9).inside + growth(1e-9, 1e-9).beyond, "");
+  EXPECT_EQ(growth(1e-12, 0.0).inside, "") << "smaller gaps are welcome";
+  const auto small = growth(1e-9, 5e-8);
+  EXPECT_THAT(small.inside, HasSubstr("gap at a vertex grew from 1e-09 by 4.9e-08, inside the "
+                                      "tolerance of 1e-07"));
+  EXPECT_EQ(small.beyond, "");
+  const auto large = growth(2e-7, 5e-8);
+  EXPECT_THAT(large.beyond, HasSubstr("between an edge and its faces grew"));
+  EXPECT_THAT(large.beyond, HasSubstr("beyond the tolerance of 1e-07"));
+  EXPECT_THAT(large.inside, HasSubstr("vertex"));
+}
+
 }  // namespace
 }  // namespace isochor

@@ -80,6 +80,11 @@ WriteReport read_back(const WriteJob& job, const std::string& path, WriteReport 
   const std::string growth = tolerance_growth(report.rebuilt, report.reread);
   if (!growth.empty() && job.edits.empty()) report.notices.push_back(growth);
   if (report.refusal.empty() && !job.edits.empty()) report.refusal = growth;
+  const GapGrowth gaps = gap_growth(report.rebuilt, report.reread);
+  for (const std::string& text : {gaps.inside, gaps.beyond}) {
+    if (!text.empty()) report.notices.push_back(text);
+  }
+  if (report.refusal.empty() && !job.edits.empty()) report.refusal = gaps.beyond;
   return report;
 }
 

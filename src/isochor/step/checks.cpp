@@ -122,6 +122,25 @@ std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread
   return text.empty() ? "" : "after reading the file back, " + text;
 }
 
+GapGrowth gap_growth(const ShapeFacts& written, const ShapeFacts& reread) {
+  GapGrowth growth;
+  const double rounding = kLengthRounding * written.diagonal;
+  const auto compare = [&](const std::string& what, double from, double to) {
+    const std::string text = grew(what, from, to, rounding);
+    if (text.empty()) return;
+    const bool inside = to <= written.max_tolerance + rounding;
+    std::string& place = inside ? growth.inside : growth.beyond;
+    if (place.empty()) {
+      place = "after reading the file back, " + text + (inside ? ", inside" : ", beyond") +
+              " the tolerance of " + number_text(written.max_tolerance);
+    }
+  };
+  compare("the largest gap between an edge and its faces", written.max_edge_gap,
+          reread.max_edge_gap);
+  compare("the largest gap at a vertex", written.max_vertex_gap, reread.max_vertex_gap);
+  return growth;
+}
+
 std::string objection_to_reread(const ShapeFacts& written, const ShapeFacts& reread, bool labels) {
   if (written.valid && !reread.valid) {
     return "the file reads back as an invalid shape" + first_defect(reread);

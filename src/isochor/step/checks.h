@@ -24,7 +24,14 @@ std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& re
 // Says when the largest tolerance is larger than it was; reading a file again may enlarge it.
 std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread);
 
-// Compares what was read back with what was written, tolerances aside.
+// Files store no ranges of edges: a reader finds anew where they end, and gaps may differ. `beyond`
+// is what lies outside the tolerance that the shape had, `inside` what grew within it.
+struct GapGrowth {
+  std::string inside, beyond;
+};
+GapGrowth gap_growth(const ShapeFacts& written, const ShapeFacts& reread);
+
+// Compares what was read back with what was written, tolerances and gaps aside.
 std::string objection_to_reread(const ShapeFacts& written, const ShapeFacts& reread, bool labels);
 
 }  // namespace isochor::internal
