@@ -68,7 +68,7 @@ std::vector<KnotLine> interior_smoothness(const Surface& surface, Direction dire
 struct PoleSide {
   bool collapsed = false;
   double spread = 0.0;         // largest distance of its poles from the first one
-  double max_angle_rad = 0.0;  // between the limits of the normals, all around
+  double max_angle_rad = 0.0;  // of the limits of the normals to the one where the side begins
   // kTangent: one tangent plane; kAlmost: nearly; kSharp: a tip like that of a cone.
   Smoothness smoothness = Smoothness::kSharp;
 };
