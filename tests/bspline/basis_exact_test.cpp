@@ -51,7 +51,7 @@ KnotVector on_a_grid(const KnotVector& knots) {
 
 TEST(BasisExact, ValuesAndDerivativesOfAllDegrees) {
   std::mt19937 random(301);
-  for (int degree = 1; degree <= kMaxDegree; ++degree) {
+  for (int degree = 1; degree <= kMaxDegree; degree += degree < 13 ? 1 : 2) {
     for (const KnotVector& random_knots :
          {testing::random_clamped(random, degree, 2), testing::random_unclamped(random, degree, 2),
           testing::random_wrapped(random, degree, 3)}) {

@@ -238,6 +238,50 @@ TEST(JoinMeasures, CreasesAlongTheSideAreNotCreasesAcrossIt) {
   }
 }
 
+// The same curve with other knots has no gap and no angle, however wild it is: for every sample the
+// right one of many near misses has to be found.
+TEST(JoinMeasures, WildCurvesWithOtherKnotsHaveNoGap) {
+  std::mt19937 random(355);
+  for (int round = 0; round < 150; ++round) {
+    const KnotVector u = testing::random_clamped(random, 2, 1);
+    const KnotVector v = testing::random_clamped(random, 1 + round % 6, round % 5);
+    const Surface a = testing::random_surface(random, u, v, round % 2 == 1);
+    const Surface b =
+        refine(a, u, with_knots(v, testing::random_insertions(random, v, 1 + round % 4)));
+    const bool opposed = round % 3 == 0;
+    const Reoriented other = reoriented(b, false, opposed, false);
+    PatchModel model = make_separate_model({a, other.surface});
+    model.patches[1].reversed = other.normal_flipped;
+    const Join join = measure_join(model, {0, Side::kUEnd}, {1, Side::kUEnd}, opposed);
+    EXPECT_FALSE(join.matching);
+    EXPECT_LT(join.max_gap, 1e-12) << round;
+    EXPECT_LT(join.max_angle_rad, 1e-6) << round;
+  }
+}
+
+// Two curves of the same points at different speeds: equal shares of the domain are not equal
+// points, so that the nearest ones have to be found without help.
+TEST(JoinMeasures, OtherSpeedsAlongTheCurveHaveNoGap) {
+  std::mt19937 random(356);
+  for (int round = 0; round < 40; ++round) {
+    const int degree = 2 + round % 3;
+    const KnotVector line = KnotVector::uniform(1, 1);
+    const KnotVector v = KnotVector::uniform(degree, 1);
+    const Surface a = testing::random_surface(random, line, v, false);
+    // The Moebius map t -> c t / (1 - t + c t) of a Bezier curve gives its poles the weights c^j.
+    const double c = round % 2 == 0 ? 3.0 : 0.4;
+    std::vector<double> weights;
+    for (int i = 0; i < 2; ++i) {
+      for (int j = 0; j <= degree; ++j) weights.push_back(std::pow(c, j));
+    }
+    const PatchModel model = make_separate_model({a, Surface(line, v, a.poles(), weights)});
+    const Join join = measure_join(model, {0, Side::kUEnd}, {1, Side::kUEnd}, false);
+    EXPECT_THAT(join.mismatch, HasSubstr("weight"));
+    EXPECT_LT(join.max_gap, 1e-13) << round;
+    EXPECT_LT(join.max_angle_rad, 1e-7) << round;
+  }
+}
+
 TEST(JoinMeasures, ATJunctionHasTheGapOfTheShorterSide) {
   const KnotVector line = KnotVector::uniform(1, 1);
   const Surface full(line, line, {{0, 0, 0}, {0, 2, 0}, {1, 0, 0}, {1, 2, 0}});

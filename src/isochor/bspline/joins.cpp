@@ -73,70 +73,86 @@ class SideCurve {
   Limit fixed_limit_ = Limit::kFromAbove;
 };
 
-// Finds the parameter of a curve's point nearest to a given one: samples, then Newton inside the
-// spans on both sides of the nearest one. A step never crosses a knot: beyond a crease the tangent
-// is another one.
+// Finds the parameter of a curve's point nearest to a given one: samples, then descent inside the
+// intervals between them. Every interval that may come nearer is looked at, because another part of
+// the curve can have the nearest sample; an interval never holds a knot, because beyond a crease
+// the tangent is another one.
 class NearestOnCurve {
  public:
   explicit NearestOnCurve(const SideCurve& curve) : curve_(curve) {
     const KnotVector& knots = curve.knots();
     const int per_span = 2 * knots.degree() + 2;
+    add(knots.begin());
     for (int k : knots.spans()) {
-      if (samples_.empty()) add(knots.begin(), k);
-      for (int i = 1; i < per_span; ++i) {
-        add(knots[k] + (knots[k + 1] - knots[k]) * i / per_span, k);
-      }
-      add(knots[k + 1], k);
+      for (int i = 1; i < per_span; ++i) add(knots[k] + (knots[k + 1] - knots[k]) * i / per_span);
+      add(knots[k + 1]);
     }
   }
 
-  double parameter(const Vec3& p) const {
-    size_t nearest = 0;
-    Candidate best{samples_[0].t, (samples_[0].point - p).norm()};
-    for (size_t i = 1; i < samples_.size(); ++i) {
-      const double distance = (samples_[i].point - p).norm();
-      if (distance < best.distance) best = {samples_[i].t, distance}, nearest = i;
+  // `hint`: a parameter worth trying, such as the same share of the domain.
+  double parameter(const Vec3& p, double hint) const {
+    std::vector<double> distance;
+    for (const Vec3& point : points_) distance.push_back((point - p).norm());
+    const auto nearest = std::min_element(distance.begin(), distance.end());
+    Candidate best{at_[static_cast<size_t>(nearest - distance.begin())], *nearest};
+    const Candidate hinted = at(hint, p);
+    if (hinted.distance <= best.distance) best = hinted;
+    // An arc between two samples is taken to be at most twice as long as its chord.
+    std::vector<std::pair<double, size_t>> intervals;
+    for (size_t i = 0; i + 1 < at_.size(); ++i) {
+      const double reach = 2.0 * (points_[i + 1] - points_[i]).norm();
+      const double at_least = std::max(distance[i], distance[i + 1]) - reach;
+      if (at_least < best.distance) intervals.emplace_back(at_least, i);
     }
-    const Candidate start = best;
-    const size_t after = std::min(nearest + 1, samples_.size() - 1);
-    for (int span : {samples_[nearest].span, samples_[after].span}) {
-      const Candidate found = descend(p, span, start);
+    std::sort(intervals.begin(), intervals.end());
+    for (const auto& [at_least, i] : intervals) {
+      if (at_least >= best.distance) break;
+      const Candidate found = descend(p, at_[i], at_[i + 1]);
       if (found.distance < best.distance) best = found;
     }
     return curve_.on_knot(best.t);
   }
 
  private:
-  struct Sample {
-    double t;
-    Vec3 point;
-    int span;  // that ends here or goes on here
-  };
   struct Candidate {
     double t, distance;
   };
 
-  void add(double t, int span) { samples_.push_back({t, curve_.point(t), span}); }
+  void add(double t) {
+    at_.push_back(t);
+    points_.push_back(curve_.point(t));
+  }
 
-  Candidate descend(const Vec3& p, int span, Candidate best) const {
-    const double low = curve_.knots()[span];
-    const double high = curve_.knots()[span + 1];
-    for (int step = 0; step < 20; ++step) {
+  Candidate at(double t, const Vec3& p) const { return {t, (curve_.point(t) - p).norm()}; }
+
+  // Newton's method on the tangent, with steps halved until they bring the point nearer.
+  Candidate descend(const Vec3& p, double low, double high) const {
+    Candidate best = at(0.5 * (low + high), p);
+    for (double end : {low, high}) {
+      const Candidate other = at(end, p);
+      if (other.distance < best.distance) best = other;
+    }
+    for (int round = 0; round < 30; ++round) {
       const SurfaceDerivatives d =
           curve_.at(best.t, 1, best.t < high ? Limit::kFromAbove : Limit::kFromBelow);
       const Vec3 tangent = curve_.tangent(d);
       const double speed2 = tangent.squaredNorm();
-      if (!(speed2 > 0.0)) break;
-      const double next = std::clamp(best.t + (p - d.s).dot(tangent) / speed2, low, high);
-      const double distance = (curve_.point(next) - p).norm();
-      if (!(distance < best.distance)) break;
-      best = {next, distance};
+      if (!(speed2 > 0.0)) return best;
+      double step = (p - d.s).dot(tangent) / speed2;
+      Candidate next = at(std::clamp(best.t + step, low, high), p);
+      for (int halving = 0; halving < 8 && !(next.distance < best.distance); ++halving) {
+        step *= 0.5;
+        next = at(std::clamp(best.t + step, low, high), p);
+      }
+      if (!(next.distance < best.distance)) return best;
+      best = next;
     }
     return best;
   }
 
   const SideCurve& curve_;
-  std::vector<Sample> samples_;
+  std::vector<double> at_;
+  std::vector<Vec3> points_;
 };
 
 struct SamplePair {
@@ -156,13 +172,10 @@ std::vector<SamplePair> sample_pairs(const SideCurve& a, const SideCurve& b, boo
       const double t = f == 1.0 ? knots[k + 1] : knots[k] + f * (knots[k + 1] - knots[k]);
       const Limit limit = f == 1.0 ? Limit::kFromBelow : Limit::kFromAbove;
       const Limit swapped = f == 1.0 ? Limit::kFromAbove : Limit::kFromBelow;
-      if (matching) {
-        const double share = (t - knots.begin()) / a.length();
-        pairs.push_back(
-            {t, b.parameter(opposed ? 1.0 - share : share), limit, opposed ? swapped : limit});
-      } else {
-        pairs.push_back({t, nearest->parameter(a.point(t)), limit, opposed ? swapped : limit});
-      }
+      const double share = (t - knots.begin()) / a.length();
+      const double same_share = b.parameter(opposed ? 1.0 - share : share);
+      const double there = matching ? same_share : nearest->parameter(a.point(t), same_share);
+      pairs.push_back({t, there, limit, opposed ? swapped : limit});
     }
   }
   return pairs;
