@@ -199,6 +199,31 @@ TEST(ClosestPointLaws, TrimmedResultsAreKeptOrOnTheLoop) {
   }
 }
 
+// The sides of a triangle are long: the distance along one has several minima.
+TEST(ClosestPointLaws, LongSegmentsOfLoopsAreSearchedWhole) {
+  std::mt19937 random(346);
+  const KnotVector u = KnotVector::uniform(2, 6);
+  const KnotVector v = KnotVector::uniform(2, 2);
+  std::vector<Vec3> poles;
+  for (int i = 0; i < u.size(); ++i) {
+    for (int j = 0; j < v.size(); ++j) {
+      poles.emplace_back(u.greville(i), v.greville(j), i % 2 == 0 ? 0.3 : -0.3);
+    }
+  }
+  const Surface waves(u, v, poles);
+  TrimRegion trim;
+  trim.loops = {{{0.02, 0.5}, {0.98, 0.5}, {0.5, 0.95}}};
+  for (int k = 0; k < 30; ++k) {
+    // In front of the edge v = 0.5, where the kept region begins.
+    const Vec3 p(testing::uniform(random, 0.1, 0.9), -0.2, testing::uniform(random, -0.6, 0.6));
+    double along = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= 2000; ++i) {
+      along = std::min(along, (waves.point(0.02 + 0.96 * i / 2000, 0.5) - p).norm());
+    }
+    EXPECT_LE(closest_point(waves, trim, p).distance, along + 1e-12) << p.transpose();
+  }
+}
+
 TEST(ClosestPointLaws, NothingIsLeftWhenEverythingIsTrimmedAway) {
   const PatchModel cube = testing::make_cube_model(2, 2);
   TrimRegion nothing;

@@ -249,38 +249,61 @@ ClosestPoint at_parameters(const Surface& surface, const Vec3& p, double u, doub
   return {0, {u, v}, point, (point - p).norm()};
 }
 
-// The nearest point on the polylines of the trimming loops.
-ClosestPoint closest_on_loops(const Surface& surface, const TrimRegion& trim, const Vec3& p) {
-  constexpr int kHalvings = 60;
+// How many samples lie strictly between two parameters.
+int samples_between(const Samples& samples, double a, double b) {
+  const auto first = std::upper_bound(samples.at.begin(), samples.at.end(), std::min(a, b));
+  const auto last = std::lower_bound(first, samples.at.end(), std::max(a, b));
+  return static_cast<int>(last - first);
+}
+
+// Makes *best the nearest point of the straight piece of parameters from a to b if it is nearer.
+// Pieces are short: the distance along one has a single minimum.
+void take_nearest_of_piece(const Surface& surface, const Vec3& p, const Uv& a, const Uv& b,
+                           ClosestPoint* best) {
+  constexpr int kThirdings = 60;
   const KnotVector& ku = surface.u_knots();
   const KnotVector& kv = surface.v_knots();
+  const auto at = [&](double t) {
+    return at_parameters(surface, p, std::clamp(a.u + t * (b.u - a.u), ku.begin(), ku.end()),
+                         std::clamp(a.v + t * (b.v - a.v), kv.begin(), kv.end()));
+  };
+  const ClosestPoint middle = at(0.5);
+  const ClosestPoint first = at(0.0);
+  const double reach = (middle.point - first.point).norm();
+  take_nearer(first, best);
+  take_nearer(middle, best);
+  if (middle.distance - 3.0 * reach > best->distance) return;
+  double low = 0.0;
+  double high = 1.0;
+  for (int step = 0; step < kThirdings; ++step) {
+    const double third = (high - low) / 3.0;
+    if (at(low + third).distance < at(high - third).distance) {
+      high -= third;
+    } else {
+      low += third;
+    }
+  }
+  take_nearer(at(0.5 * (low + high)), best);
+}
+
+// The nearest point on the polylines of the trimming loops. Segments are cut so that each piece is
+// no longer than the samples of the surface are apart.
+ClosestPoint closest_on_loops(const Surface& surface, const TrimRegion& trim, const Vec3& p) {
+  const Samples u = samples_of(surface.u_knots());
+  const Samples v = samples_of(surface.v_knots());
   ClosestPoint best;
   for (const std::vector<Uv>& loop : trim.loops) {
     for (size_t i = 0; i < loop.size(); ++i) {
       const Uv& a = loop[i];
       const Uv& b = loop[(i + 1) % loop.size()];
-      const auto at = [&](double t) {
-        return at_parameters(surface, p, std::clamp(a.u + t * (b.u - a.u), ku.begin(), ku.end()),
-                             std::clamp(a.v + t * (b.v - a.v), kv.begin(), kv.end()));
+      const int pieces = 1 + samples_between(u, a.u, b.u) + samples_between(v, a.v, b.v);
+      const auto corner = [&](int k) {
+        const double share = static_cast<double>(k) / pieces;
+        return Uv{a.u + share * (b.u - a.u), a.v + share * (b.v - a.v)};
       };
-      const ClosestPoint middle = at(0.5);
-      const ClosestPoint first = at(0.0);
-      const double reach = (middle.point - first.point).norm();
-      take_nearer(first, &best);
-      take_nearer(middle, &best);
-      if (middle.distance - 3.0 * reach > best.distance) continue;
-      // Segments are short: the distance along one has a single minimum.
-      double low = 0.0;
-      double high = 1.0;
-      for (int step = 0; step < kHalvings; ++step) {
-        const double third = (high - low) / 3.0;
-        if (at(low + third).distance < at(high - third).distance) {
-          high -= third;
-        } else {
-          low += third;
-        }
+      for (int k = 0; k < pieces; ++k) {
+        take_nearest_of_piece(surface, p, corner(k), k + 1 == pieces ? b : corner(k + 1), &best);
       }
-      take_nearer(at(0.5 * (low + high)), &best);
     }
   }
   return best;
