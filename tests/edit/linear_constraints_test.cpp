@@ -6,8 +6,7 @@
 #include <optional>
 #include <random>
 
-#include "isochor/bspline/joins.h"
-#include "support/models.h"
+#include "edit/fixtures.h"
 
 namespace isochor {
 namespace {
@@ -15,11 +14,11 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
+using testing::value_of;
 
 class LinearConstraints : public ::testing::Test {
  protected:
-  LinearConstraints() : model_(testing::make_cube_model(2, 4)) {
-    model_.joins = find_joins(model_);
+  LinearConstraints() : model_(testing::small_cube()) {
     space_.emplace(model_, DisplacementSpace::Options{});
     all_.assign(static_cast<size_t>(space_->size()), 1);
   }
@@ -28,14 +27,6 @@ class LinearConstraints : public ::testing::Test {
   }
   LinearConstraint at(const std::string& name, int q, double u, double v, const Vec3& value) const {
     return {name, space_->surface_row(model_, q, {u, v}), value};
-  }
-  Vec3 value_of(const LinearConstraint& constraint, const std::vector<Vec3>& delta) const {
-    Vec3 sum = Vec3::Zero();
-    for (size_t k = 0; k < constraint.row.coefficient.size(); ++k) {
-      sum += constraint.row.value[k].cwiseProduct(
-          delta[static_cast<size_t>(constraint.row.coefficient[k])]);
-    }
-    return sum;
   }
 
   PatchModel model_;
@@ -54,7 +45,7 @@ TEST_F(LinearConstraints, ParticularSolvesAndIsShortest) {
   std::vector<Vec3> delta(all_.size(), Vec3::Zero());
   equations.add_to(t, 1.0, delta);
   for (const LinearConstraint& constraint : asked) {
-    EXPECT_LE((value_of(constraint, delta) - constraint.value).norm(), 1e-13);
+    EXPECT_LE((value_of(constraint.row, delta) - constraint.value).norm(), 1e-13);
   }
   std::vector<double> in_null_space = t;  // the shortest solution has no part that changes nothing
   equations.project(in_null_space);
@@ -73,7 +64,7 @@ TEST_F(LinearConstraints, ProjectionChangesNoConstraint) {
   std::vector<Vec3> delta(all_.size(), Vec3::Zero());
   equations.add_to(t, 1.0, delta);
   for (const LinearConstraint& constraint : asked) {
-    EXPECT_LE(value_of(constraint, delta).norm(), 1e-13);
+    EXPECT_LE(value_of(constraint.row, delta).norm(), 1e-13);
   }
 }
 

@@ -52,8 +52,8 @@ Slots direction_slots(const DisplacementSpace& space, const std::vector<char>& s
 
 ConstraintSystem::ConstraintSystem(const DisplacementSpace& space, Slots slots,
                                    const std::vector<LinearConstraint>& constraints,
-                                   bool homogeneous)
-    : space_(&space), slots_(std::move(slots)) {
+                                   bool homogeneous, double negligible)
+    : space_(&space), slots_(std::move(slots)), negligible_(negligible) {
   scale_.reserve(slots_.size());
   for (int c : slots_.coefficient) scale_.push_back(1.0 / std::sqrt(space.weight(c)));
   std::vector<Vec3> dense(static_cast<size_t>(space.size()), Vec3::Zero());
@@ -62,12 +62,15 @@ ConstraintSystem::ConstraintSystem(const DisplacementSpace& space, Slots slots,
     for (size_t i = 0; i < row.coefficient.size(); ++i) {
       dense[static_cast<size_t>(row.coefficient[i])] += row.value[i];
     }
+    // Mirrored halves of a row cancel across the plane up to rounding: that axis is measured by
+    // the others, so that its rounding is not taken for an equation.
+    Vec3 squares = Vec3::Zero();
+    for (const Vec3& value : row.value) squares += value.cwiseAbs2();
+    const double natural_size = std::sqrt(squares.maxCoeff());
     for (int a = 0; a < 3; ++a) {
       if (!(constraints[k].axes >> a & 1u)) continue;
       Equation equation{k, std::vector<double>(slots_.size()),
-                        homogeneous ? 0.0 : constraints[k].value[a], 0.0};
-      for (const Vec3& value : row.value) equation.natural_size += value[a] * value[a];
-      equation.natural_size = std::sqrt(equation.natural_size);
+                        homogeneous ? 0.0 : constraints[k].value[a], natural_size};
       for (size_t s = 0; s < slots_.size(); ++s) {
         equation.values[s] = dense[static_cast<size_t>(slots_.coefficient[s])][a] *
                              slots_.direction[s][a] * scale_[s];
@@ -84,7 +87,7 @@ void ConstraintSystem::add_equation(const std::vector<LinearConstraint>& constra
   ++rows_;
   const double size = std::sqrt(dot(equation.values, equation.values));
   if (!(size > equation.natural_size * std::sqrt(kDependentPivot))) {
-    if (equation.rhs != 0.0) add_unique(unreachable_, name);
+    if (std::abs(equation.rhs) > negligible_) add_unique(unreachable_, name);
     return;
   }
   const double inverse = 1.0 / size;
@@ -116,7 +119,7 @@ void ConstraintSystem::add_equation(const std::vector<LinearConstraint>& constra
     return;
   }
   // Dependent. The same threshold decides whether the right-hand sides agree.
-  const double agree = std::sqrt(kDependentPivot) * rhs_size;
+  const double agree = std::max(std::sqrt(kDependentPivot) * rhs_size, negligible_ * inverse);
   if (std::abs(rhs) <= agree) {
     add_unique(redundant_, name);
     return;

@@ -7,7 +7,8 @@
 // The equations are orthonormalised in order of input (Gram-Schmidt, twice): an equation that
 // depends on earlier ones is redundant when its right-hand side agrees and conflicting when not.
 // Dependence is decided in floating point with kDependentPivot; near ties are possible, exact
-// verdicts are the exact engine's task.
+// verdicts are the exact engine's task. Right-hand sides are displacements: what is left of them
+// counts as rounding when it is at most `negligible`, a length.
 #pragma once
 
 #include <string>
@@ -40,7 +41,8 @@ class ConstraintSystem {
  public:
   // With `homogeneous` the right-hand sides are taken as zero. Cost O(#slots * #equations^2).
   ConstraintSystem(const DisplacementSpace& space, Slots slots,
-                   const std::vector<LinearConstraint>& constraints, bool homogeneous);
+                   const std::vector<LinearConstraint>& constraints, bool homogeneous,
+                   double negligible = 0.0);
 
   const Slots& slots() const { return slots_; }
   int rows() const { return rows_; }
@@ -65,12 +67,13 @@ class ConstraintSystem {
     size_t constraint;  // index of input
     std::vector<double> values;
     double rhs;
-    double natural_size;  // norm of the row before slots were restricted
+    double natural_size;  // norm of the row before slots were restricted: that of its largest axis
   };
   void add_equation(const std::vector<LinearConstraint>& constraints, Equation equation);
 
   const DisplacementSpace* space_;
   Slots slots_;
+  double negligible_;
   std::vector<double> scale_;               // 1 / sqrt(m) by slot
   std::vector<std::vector<double>> basis_;  // orthonormal rows
   std::vector<double> basis_rhs_;

@@ -92,7 +92,8 @@ class Solver {
   ConstraintSystem positional_system(unsigned axes) {
     std::vector<LinearConstraint> asked = problem_.constraints;
     for (LinearConstraint& constraint : asked) constraint.axes &= axes;
-    return ConstraintSystem(space_, axis_slots(space_, problem_.extent, axes), asked, false);
+    return ConstraintSystem(space_, axis_slots(space_, problem_.extent, axes), asked, false,
+                            kReached * problem_.size);
   }
 
   ConstraintSystem correction_system(unsigned axes) {
