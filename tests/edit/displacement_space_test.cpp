@@ -3,50 +3,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <random>
-
+#include "edit/fixtures.h"
 #include "isochor/base/error.h"
-#include "isochor/bspline/continuity.h"
-#include "isochor/bspline/joins.h"
-#include "support/models.h"
 
 namespace isochor {
 namespace {
 
 using ::testing::HasSubstr;
 
-PatchModel prepared(PatchModel model) {
-  model.joins = find_joins(model);
-  derive_locks(model);
-  return model;
-}
-
-DisplacementSpace::Options with_scale(int every) {
-  DisplacementSpace::Options options;
-  options.scale.kind = every == 1 ? Scale::Kind::kFinest : Scale::Kind::kEvery;
-  options.scale.every = every;
-  options.continuity = Continuity::kC0;
-  return options;
-}
-
-std::vector<Vec3> random_vectors(std::uint32_t seed, size_t count) {
-  std::mt19937 random(seed);
-  std::normal_distribution<double> value;
-  std::vector<Vec3> vectors(count);
-  for (Vec3& v : vectors) v = Vec3(value(random), value(random), value(random));
-  return vectors;
-}
-
-double dot(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  double sum = 0.0;
-  for (size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
-}
+using testing::at_scale;
+using testing::dot;
+using testing::mirrored;
+using testing::prepared;
+using testing::random_vectors;
 
 TEST(DisplacementSpace, GatherIsTheTransposeOfExpand) {
   for (int every : {1, 2, 5}) {
     const PatchModel model = prepared(testing::make_cube_model(3, 10));
-    const DisplacementSpace space(model, with_scale(every));
+    const DisplacementSpace space(model, at_scale(every));
     const auto delta = random_vectors(1, static_cast<size_t>(space.size()));
     const auto gradient = random_vectors(2, model.points.size());
     const double there = dot(gradient, space.expand(delta));
@@ -61,7 +35,7 @@ TEST(DisplacementSpace, TheSurfaceMovesAsItsRowSays) {
     options.spans = 5;
     options.weight_ratio = ratio;
     const PatchModel model = prepared(testing::random_closed_model(3, options));
-    const DisplacementSpace space(model, with_scale(2));
+    const DisplacementSpace space(model, at_scale(2));
     const auto delta = random_vectors(4, static_cast<size_t>(space.size()));
     PatchModel moved = model;
     const auto displacement = space.expand(delta);
@@ -99,8 +73,8 @@ TEST(DisplacementSpace, TiedPointsGetTheSameBits) {
   }
   for (int every : {1, 3}) {
     const PatchModel ready = prepared(tied);
-    const DisplacementSpace space(ready, with_scale(every));
-    EXPECT_EQ(space.size(), DisplacementSpace(prepared(model), with_scale(every)).size());
+    const DisplacementSpace space(ready, at_scale(every));
+    EXPECT_EQ(space.size(), DisplacementSpace(prepared(model), at_scale(every)).size());
     const auto moved = space.expand(random_vectors(5, static_cast<size_t>(space.size())));
     for (const auto& [a, b] : ready.ties) {
       EXPECT_EQ(moved[static_cast<size_t>(a)], moved[static_cast<size_t>(b)]);
@@ -112,7 +86,7 @@ TEST(DisplacementSpace, LockedPointsDoNotMoveAtAnyScale) {
   PatchModel model = prepared(testing::make_cube_model(3, 10));
   model.lock(model.patches[0].point(6, 6), "a window is here", false);
   for (int every : {1, 2, 4}) {
-    const DisplacementSpace space(model, with_scale(every));
+    const DisplacementSpace space(model, at_scale(every));
     std::vector<Vec3> delta = random_vectors(6, static_cast<size_t>(space.size()));
     int locked = 0;
     for (int c = 0; c < space.size(); ++c) {
@@ -131,7 +105,7 @@ TEST(DisplacementSpace, LockedPointsDoNotMoveAtAnyScale) {
 TEST(DisplacementSpace, ContinuityLocksAreLiftedByC0) {
   PatchModel model = prepared(testing::make_cube_model(3, 6));
   model.lock(model.patches[0].point(4, 4), "smooth join", true);
-  DisplacementSpace::Options options = with_scale(1);
+  DisplacementSpace::Options options = at_scale(1);
   const auto locked = [&] {
     const DisplacementSpace space(model, options);
     return space.locked_axes(space.coefficient(0, 4, 4));
@@ -144,7 +118,7 @@ TEST(DisplacementSpace, ContinuityLocksAreLiftedByC0) {
 TEST(DisplacementSpace, MirroredSpacesAreSmallerAndSymmetric) {
   PatchModel model = testing::make_cube_model(3, 7);
   testing::translate(model, Vec3(-0.5, 0.0, 0.0));
-  DisplacementSpace::Options options = with_scale(1);
+  DisplacementSpace::Options options = at_scale(1);
   const PatchModel ready = prepared(model);
   const int full = DisplacementSpace(ready, options).size();
   options.symmetry_axes = {0};
@@ -160,7 +134,7 @@ TEST(DisplacementSpace, MirroredSpacesAreSmallerAndSymmetric) {
 
 TEST(DisplacementSpace, AsymmetricModelsAreNamed) {
   PatchModel model = testing::make_cube_model(3, 4);  // from 0 to 1: no mirror image in x
-  DisplacementSpace::Options options = with_scale(1);
+  DisplacementSpace::Options options = at_scale(1);
   options.symmetry_axes = {0};
   try {
     DisplacementSpace space(prepared(model), options);
@@ -172,7 +146,7 @@ TEST(DisplacementSpace, AsymmetricModelsAreNamed) {
 
 TEST(DisplacementSpace, ACollapsedSideIsOneCoefficient) {
   const PatchModel model = prepared(testing::make_sphere(1.0));
-  const DisplacementSpace space(model, with_scale(1));
+  const DisplacementSpace space(model, at_scale(1));
   const Patch& patch = model.patches[0];
   int collapsed = 0;
   const PointClasses classes = point_classes(model);

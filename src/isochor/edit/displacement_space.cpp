@@ -263,6 +263,15 @@ void DisplacementSpace::make_places(const PatchModel& model) {
   locked_axes_.assign(count, 0);
   lock_reason_of_.assign(count, -1);
   std::vector<std::set<int>> neighbours(count);
+  std::vector<char> inside(count, 0);
+  // A wrapped row and its copy are one coefficient: the copy whose mean of knots lies inside the
+  // domain is the one that says where it is.
+  const auto mean_is_inside = [](const KnotVector& knots, int i) {
+    double sum = 0.0;
+    for (int k = 1; k <= knots.degree(); ++k) sum += knots[i + k];
+    const double mean = sum / knots.degree();
+    return knots.begin() <= mean && mean <= knots.end();
+  };
   for (size_t q = 0; q < grids_.size(); ++q) {
     const Grid& grid = grids_[q];
     const Surface surface = model.surface(static_cast<int>(q));
@@ -272,7 +281,10 @@ void DisplacementSpace::make_places(const PatchModel& model) {
       for (int j = 0; j < nv; ++j) {
         const int c = coefficient(static_cast<int>(q), i, j);
         const auto at = static_cast<size_t>(c);
-        if (patch_of_[at] < 0) {
+        const bool better =
+            !inside[at] && mean_is_inside(grid.u.coarse, i) && mean_is_inside(grid.v.coarse, j);
+        if (patch_of_[at] < 0 || better) {
+          inside[at] = better;
           patch_of_[at] = static_cast<int>(q);
           places_[at] = surface.point(grid.u.coarse.greville(i), grid.v.coarse.greville(j));
         }
@@ -292,8 +304,10 @@ void DisplacementSpace::make_places(const PatchModel& model) {
 
 void DisplacementSpace::lock_coefficient(int c, unsigned axes, const std::string& reason) {
   const auto at = static_cast<size_t>(c);
+  const bool was_locked = locked_axes_[at] == kAllAxes;
   locked_axes_[at] |= axes;
-  if (axes != kAllAxes || lock_reason_of_[at] >= 0) return;
+  // The first reason stays, but what locks all axes says more than what locks one.
+  if (lock_reason_of_[at] >= 0 && (was_locked || axes != kAllAxes)) return;
   const auto found = std::find(lock_reasons_.begin(), lock_reasons_.end(), reason);
   lock_reason_of_[at] = static_cast<int>(found - lock_reasons_.begin());
   if (found == lock_reasons_.end()) lock_reasons_.push_back(reason);

@@ -49,7 +49,8 @@ class DisplacementSpace {
   // +1 or -1 per axis: the displacement of grid index (i, j) is signs .* delta_coefficient.
   Vec3 signs(int q, int i, int j) const;
 
-  // Where a coefficient "is": the surface point at its Greville abscissae.
+  // Where a coefficient "is": the surface point at its Greville abscissae (inside the domain, where
+  // a direction wraps).
   const Vec3& place(int c) const { return places_[static_cast<size_t>(c)]; }
   // How many grid coefficients it stands for in the metric (2 for a mirrored pair, else 1).
   double weight(int c) const { return weights_[static_cast<size_t>(c)]; }
