@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
@@ -21,6 +22,12 @@ std::string list(const std::vector<std::string>& names) {
   std::string text;
   for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
   return text;
+}
+
+std::string print(double value) {  // std::to_string would print a change of 1e-18 as zero
+  std::ostringstream text;
+  text << value;
+  return text.str();
 }
 
 // All state of one solve.
@@ -135,12 +142,20 @@ class Solver {
     return names;
   }
 
+  // The size of the gradient on the coefficients of a system, whatever axes its unknowns may use:
+  // what a gradient must be compared with before its rounding is taken for a direction.
+  static double size_on(const ConstraintSystem& system, const std::vector<Vec3>& full) {
+    double sum = 0.0;
+    for (int c : system.slots().coefficient) sum += full[static_cast<size_t>(c)].squaredNorm();
+    return std::sqrt(sum);
+  }
+
   // The volume cannot be corrected: says which of the published degenerate cases it is.
   void stop_without_direction(const std::vector<double>& gradient, double gradient_scale,
                               double missing, bool proven, const std::string& where) {
     std::vector<std::string> culprits = constraint_names();
     culprits.emplace_back("volume");
-    std::string text = "the volume is off by " + std::to_string(missing) + " and ";
+    std::string text = "the volume is off by " + print(missing) + " and ";
     if (norm(gradient) <= kVanishing * gradient_scale) {
       text += "no free coefficient changes it" + where + " (the gradient vanishes on the extent)";
     } else {
@@ -164,8 +179,8 @@ class Solver {
     for (const LinearConstraint& c : problem_.constraints) asked = std::max(asked, c.value.norm());
     if (largest <= problem_.size + 10.0 * asked) return;
     stop(Outcome::kUndecided,
-         "keeping the volume within this extent would move control points by " +
-             std::to_string(largest) + ", more than the size of the model: enlarge the extent",
+         "keeping the volume within this extent would move control points by " + print(largest) +
+             ", more than the size of the model: enlarge the extent",
          {"volume"});
   }
 
@@ -180,14 +195,15 @@ class Solver {
     const double missing = problem_.change - change_at(positional);
     std::vector<double> direction;
     for (int k = 0; k < kMostIterations; ++k) {
-      const std::vector<double> gradient = correction.pull_back(gradient_at(result_.delta));
+      const std::vector<Vec3> full = gradient_at(result_.delta);
+      const std::vector<double> gradient = correction.pull_back(full);
       std::vector<double> next = gradient;
       correction.project(next);
       const double length = norm(next);
-      if (!(length > kVanishing * norm(gradient))) {
+      const double scale = size_on(correction, full);
+      if (!(length > kVanishing * scale)) {
         if (k == 0 && close_enough(missing)) return;
         const bool proven = correction.slots().size() == static_cast<size_t>(correction.rank());
-        const double scale = problem_.size * problem_.size;
         return stop_without_direction(gradient, scale, missing, proven, "");
       }
       for (double& value : next) value /= length;
@@ -262,10 +278,7 @@ class Solver {
     std::vector<double> direction = gradient;
     correction.project(direction);
     const double missing = wanted - change_at(result_.delta);
-    double scale = 0.0;
-    for (int c : correction.slots().coefficient)
-      scale += full[static_cast<size_t>(c)].squaredNorm();
-    scale = std::sqrt(scale);
+    const double scale = size_on(correction, full);
     const double length = norm(direction);
     if (!(length > kVanishing * scale)) {
       if (close_enough(missing)) return true;
@@ -299,9 +312,10 @@ class Solver {
     for (size_t c = 0; c < full.size(); ++c) first_order += full[c].dot(result_.delta[c]);
     const double missing = problem_.change - first_order;
     const double length = norm(direction);
-    if (!(length > kVanishing * norm(gradient))) {
+    const double scale = size_on(correction, full);
+    if (!(length > kVanishing * scale)) {
       if (close_enough(missing)) return;
-      return stop_without_direction(gradient, problem_.size * problem_.size, missing, true, "");
+      return stop_without_direction(gradient, scale, missing, true, "");
     }
     correction.add_to(direction, missing / (length * length), result_.delta);
   }
@@ -319,6 +333,9 @@ SolveResult solve(const SolveProblem& problem) {
                   problem.points != nullptr);
   const auto count = static_cast<size_t>(problem.space->size());
   ISOCHOR_REQUIRE(problem.extent.size() == count && problem.sink.size() == count, count);
+  std::array<int, 3> axes = problem.axis_order;
+  std::sort(axes.begin(), axes.end());
+  ISOCHOR_REQUIRE((axes == std::array<int, 3>{0, 1, 2}), axes[0], axes[1], axes[2]);
   return Solver(problem).run();
 }
 
