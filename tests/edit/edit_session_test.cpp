@@ -6,43 +6,20 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "edit/fixtures.h"
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
-#include "isochor/bspline/continuity.h"
-#include "isochor/bspline/joins.h"
 #include "isochor/volume/exact_volume.h"
 #include "isochor/volume/volume_form.h"
-#include "support/models.h"
 
 namespace isochor {
 namespace {
 
 using ::testing::HasSubstr;
 
-// A model with its joins and freedoms, as the readers deliver it.
-PatchModel prepared(PatchModel model) {
-  model.joins = find_joins(model);
-  derive_locks(model);
-  return model;
-}
-
-PatchModel paper_cube() { return prepared(testing::make_cube_model(3, 12)); }
-
-// Figure 4 of Sauvage et al. 2008: point (0.7, 0.8) of the top, displacement (0.2, 0.2, 0.9).
-Edit figure4(Method method) {
-  Edit edit;
-  edit.name = "figure 4";
-  Move move;
-  move.place.patch = "top";
-  move.place.uv = {0.7, 0.8};
-  move.vector = Vec3(0.2, 0.2, 0.9);
-  edit.moves = {move};
-  edit.extent.kind = Extent::Kind::kRadius;
-  edit.extent.radius = 0.5;
-  edit.continuity = Continuity::kC0;
-  edit.method = method;
-  return edit;
-}
+using testing::figure4;
+using testing::paper_cube;
+using testing::prepared;
 
 double volume_of(const PatchModel& model) { return VolumeForm(model).value(model.points); }
 

@@ -13,7 +13,9 @@ namespace isochor {
 
 struct VolumeRecord {
   double before = 0.0, after = 0.0;
-  double relative_change = 0.0;  // (after - before) / before, from the exact change of the patches
+  // (after - before) / |before|, from the exact change of the patches; over the cube of the
+  // diagonal for open models whose volume is zero up to rounding.
+  double relative_change = 0.0;
   double bound = 0.0;          // of relative_change: rounding (and quadrature for rational patches)
   double total_bound = 0.0;    // of `before` itself, when it includes trimmed faces
   double wanted_change = 0.0;  // what was asked of this edit

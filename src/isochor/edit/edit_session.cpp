@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include "isochor/base/error.h"
@@ -41,6 +42,29 @@ JoinRecord measure_joins(const PatchModel& before, const PatchModel& after) {
   return record;
 }
 
+void check_finite(const Vec3& vector, size_t move) {
+  if (vector.allFinite()) return;
+  std::ostringstream text;
+  text << "the vector (" << vector.transpose() << ") is not finite";
+  throw InputError("", "move[" + std::to_string(move) + "]", text.str());
+}
+
+// Numbers that no reader lets through, but callers may hand over.
+void check_numbers(const Edit& edit) {
+  for (size_t k = 0; k < edit.moves.size(); ++k) {
+    check_finite(edit.moves[k].vector, k);
+    for (const Vec3& step : edit.moves[k].drag) check_finite(step, k);
+  }
+  if (!std::isfinite(edit.volume.value)) {
+    throw InputError("", "volume", std::to_string(edit.volume.value) + " is not finite");
+  }
+  const Vec3& direction = edit.sink.direction;
+  if (edit.sink.kind == Sink::Kind::kDirection &&
+      !(direction.allFinite() && direction.norm() > 0.0)) {
+    throw InputError("", "sink", "the direction is zero or not finite");
+  }
+}
+
 bool has_moved(const Patch& patch, const std::vector<Vec3>& displacement) {
   return std::any_of(patch.points.begin(), patch.points.end(),
                      [&](int id) { return displacement[static_cast<size_t>(id)] != Vec3::Zero(); });
@@ -71,6 +95,12 @@ struct EditSession::State {
   std::optional<Active> active;
 
   double total() const { return now.reference + now.excess; }
+  // What changes of the volume are compared with: the volume, or the cube of the diagonal where the
+  // volume is no more than rounding of that (an open sheet that straddles z = 0).
+  double scale_of(double volume) const {
+    const double cube = std::pow(diagonal(now.model), 3);
+    return std::abs(volume) > kVolumeKept * cube ? std::abs(volume) : cube;
+  }
 
   // The change that the goal asks for, from the present volume.
   double wanted_change(const VolumeGoal& goal) const {
@@ -133,6 +163,7 @@ double EditSession::volume() const { return state_->total(); }
 Certificate EditSession::begin(const Edit& edit) {
   State& state = *state_;
   ISOCHOR_REQUIRE(!state.active, "an edit is under way");
+  check_numbers(edit);
   const bool needs_volume = edit.volume.kind != VolumeGoal::Kind::kFree;
   if (!state.surroundings.closed && needs_volume && !edit.open) {
     return state.refusal(edit, "the model is open (" + state.surroundings.why_open +
@@ -148,7 +179,7 @@ Certificate EditSession::begin(const Edit& edit) {
   const Stopwatch watch;
   PatchModel rest = refined_for(state.now.model, edit);
   PreparedEdit prepared(std::move(rest), edit);
-  state.active.emplace(State::Active{edit, std::move(prepared), {}, {}, 0.0});
+  state.active.emplace(State::Active{edit, std::move(prepared), state.now, {}, 0.0});
   state.active->prepare_ms = watch.milliseconds();
   std::vector<Vec3> values;
   for (const Move& move : edit.moves) values.push_back(move.vector);
@@ -157,6 +188,9 @@ Certificate EditSession::begin(const Edit& edit) {
 
 Certificate EditSession::drag(const std::vector<Vec3>& values) {
   ISOCHOR_REQUIRE(state_->active.has_value(), "no edit is under way");
+  const size_t moves = state_->active->edit.moves.size();
+  ISOCHOR_REQUIRE(values.size() == moves, values.size(), moves);
+  for (size_t k = 0; k < moves; ++k) check_finite(values[k], k);
   state_->solve(values);
   return state_->active->certificate;
 }
@@ -169,6 +203,7 @@ void EditSession::State::solve(const std::vector<Vec3>& values) {
   certificate.volume.before = total();
   certificate.volume.wanted_change = wanted;
   active->certificate = std::move(certificate);
+  active->candidate = now;
   if (active->certificate.coefficients == 0) {
     active->certificate.outcome = Outcome::kInfeasible;
     active->certificate.reason =
@@ -180,7 +215,7 @@ void EditSession::State::solve(const std::vector<Vec3>& values) {
     active->certificate.volume.after = total();
     return;
   }
-  const double scale = std::max(std::abs(total()), std::abs(total() + wanted));
+  const double scale = scale_of(std::max(std::abs(total()), std::abs(total() + wanted)));
   const SolveResult result = active->prepared.solve_for(values, wanted, scale);
   active->certificate.timings_ms["solve"] = watch.milliseconds();
   active->certificate.timings_ms["prepare"] = active->prepare_ms;
@@ -213,7 +248,6 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
     certificate.max_distance = std::max(certificate.max_distance, displacement[i].norm());
   }
   certificate.poles_moved = static_cast<int>(moved.size());
-  active->candidate = now;
   for (size_t q = 0; q < rest.patches.size(); ++q) {
     if (!has_moved(rest.patches[q], displacement)) continue;
     ++certificate.patches_moved;
@@ -227,13 +261,14 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
   const VolumeForm& form = active->prepared.volume_form();
   VolumeRecord& volume = certificate.volume;
   volume.after = volume.before + result.achieved_change;
-  volume.relative_change = result.achieved_change / std::abs(volume.before);
+  volume.relative_change = result.achieved_change / scale_of(volume.before);
   volume.bound = form.bounded_change(rest.points, after.points, form.support_of(moved)).bound /
-                 std::abs(volume.before);
+                 scale_of(volume.before);
   volume.total_bound = surroundings.outside_bound + patches_bound;
   const double missed = std::abs(result.achieved_change - volume.wanted_change);
-  volume.kept = !free && active->edit.method != Method::kTaylor &&
-                missed <= kVolumeKept * std::max(std::abs(volume.before), std::abs(volume.after));
+  volume.kept =
+      !free && active->edit.method != Method::kTaylor &&
+      missed <= kVolumeKept * scale_of(std::max(std::abs(volume.before), std::abs(volume.after)));
 
   active->candidate.model = std::move(after);
   if (free || active->edit.volume.kind == VolumeGoal::Kind::kKeep) {
