@@ -122,7 +122,7 @@ void select_poles(const PatchModel& model, const DisplacementSpace& space, const
   for (const auto& [name, list] : extent.poles) {
     const int q = find_patch(model, name);
     for (const auto& [i, j] : list) {
-      if (i >= space.u_knots(q).size() || j >= space.v_knots(q).size()) {
+      if (i < 0 || j < 0 || i >= space.u_knots(q).size() || j >= space.v_knots(q).size()) {
         throw InputError("", "extent.poles." + name,
                          "index [" + std::to_string(i) + ", " + std::to_string(j) +
                              "] is outside the grid of " + std::to_string(space.u_knots(q).size()) +

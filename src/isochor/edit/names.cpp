@@ -15,7 +15,7 @@ int find_patch(const PatchModel& model, const std::string& name) {
     const bool alias =
         std::find(patch.aliases.begin(), patch.aliases.end(), name) != patch.aliases.end();
     if (patch.handle == name) return static_cast<int>(q);  // handles are unique
-    if (patch.name == name || alias) found.push_back(static_cast<int>(q));
+    if ((patch.name == name && !name.empty()) || alias) found.push_back(static_cast<int>(q));
   }
   if (found.size() == 1) return found.front();
   constexpr size_t kMostListed = 12;

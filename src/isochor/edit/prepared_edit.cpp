@@ -78,12 +78,15 @@ std::set<int> refined_patches(const PatchModel& model, const Edit& edit) {
       patches.insert(find_patch(model, move.place.patch));
     }
   }
-  const Extent& extent = edit.extent;
-  if (!extent.patch.empty()) patches.insert(find_patch(model, extent.patch));
-  for (const std::string& face : extent.faces) patches.insert(find_patch(model, face));
-  if (extent.kind == Extent::Kind::kAll) {
+  const auto add = [&](const Extent& extent) {
+    if (!extent.patch.empty()) patches.insert(find_patch(model, extent.patch));
+    for (const auto& item : extent.poles) patches.insert(find_patch(model, item.first));
+    for (const std::string& face : extent.faces) patches.insert(find_patch(model, face));
+    if (extent.kind != Extent::Kind::kAll) return;
     for (size_t q = 0; q < model.patches.size(); ++q) patches.insert(static_cast<int>(q));
-  }
+  };
+  add(edit.extent);
+  if (edit.sink.kind == Sink::Kind::kOtherExtent) add(edit.sink.extent);
   return patches;
 }
 
@@ -165,7 +168,7 @@ ResolvedPlace PreparedEdit::resolve(const Place& place, const std::string& where
   if (place.kind == Place::Kind::kCoefficient) {
     const int nu = space_.u_knots(resolved.patch).size();
     const int nv = space_.v_knots(resolved.patch).size();
-    if (place.i >= nu || place.j >= nv) {
+    if (place.i < 0 || place.j < 0 || place.i >= nu || place.j >= nv) {
       throw InputError("", where,
                        "pole [" + std::to_string(place.i) + ", " + std::to_string(place.j) +
                            "] is outside the grid of " + std::to_string(nu) + " x " +
@@ -204,8 +207,12 @@ void PreparedEdit::resolve_holds() {
         if (!same) continue;
         for (const SideRef& side : {join.a, join.b}) {
           const Patch& patch = rest_.patches[static_cast<size_t>(side.patch)];
-          for (const auto& [i, j] : side_indices(patch, side.side)) {
-            points.push_back(patch.point(i, j));
+          const KnotVector& across = is_u_side(side.side) ? patch.u_knots : patch.v_knots;
+          const int rows = boundary_rows(across, is_begin_side(side.side), 0);
+          for (int depth = 0; depth < rows; ++depth) {
+            for (const auto& [i, j] : side_indices(patch, side.side, depth)) {
+              points.push_back(patch.point(i, j));
+            }
           }
         }
       }
