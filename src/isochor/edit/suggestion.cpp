@@ -43,11 +43,12 @@ struct FreePlace {
 };
 
 // The coefficient of patch q farthest from everything locked; among equals the one nearest to the
-// middle of the parameter domain.
+// middle of the parameter domain. Only places with a normal count.
 FreePlace freest_place(const PatchModel& model, const DisplacementSpace& space, int q) {
   const std::vector<int> steps = clearances(space);
   const KnotVector& u = space.u_knots(q);
   const KnotVector& v = space.v_knots(q);
+  const Surface surface = model.surface(q);
   FreePlace best;
   double best_offset = 0.0;
   for (int i = 0; i < u.size(); ++i) {
@@ -61,6 +62,7 @@ FreePlace freest_place(const PatchModel& model, const DisplacementSpace& space, 
         continue;
       }
       if (!inside_trim(model.patches[static_cast<size_t>(q)].trim, uv.u, uv.v)) continue;
+      if (surface.normal(uv.u, uv.v) == Vec3::Zero()) continue;  // a sharp tip has no outwards
       best = {uv, rings};
       best_offset = offset;
     }
