@@ -119,7 +119,8 @@ TEST(ModelScale, ErrorsNameThePatch) {
   const std::string contradiction = message_of<InputError>([&] {
     (void)keep_knots(model, {{0, {0.3}, {}}, {1, {}, {0.7}}});
   });
-  EXPECT_THAT(contradiction, HasSubstr("left out here but kept by a list of a joined patch"));
+  EXPECT_THAT(contradiction, HasSubstr("scale.knots of face:1 (\"top\"): u knot 0.7 is left out "
+                                       "here but kept by the list of face:2 (\"bottom\")"));
   EXPECT_THAT(message_of<InputError>([&] { (void)keep_every(model, 0); }), HasSubstr("at least 1"));
 }
 

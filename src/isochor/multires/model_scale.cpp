@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "isochor/base/error.h"
@@ -95,6 +96,12 @@ std::vector<PatchScale> build(const PatchModel& model,
   return scales;
 }
 
+std::string print(double value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
 Flags flags_for(const KnotVector& knots, const std::vector<double>& kept, const Patch& patch) {
   const std::vector<double> breaks = interior_breaks(knots);
   try {
@@ -143,6 +150,17 @@ std::vector<PatchScale> keep_knots(const PatchModel& model, const std::vector<Ke
   }
   const std::vector<std::optional<Flags>> asked = flags;
   spread(links, &flags);
+  // The patch whose list alone carries knot `at` to direction i.
+  const auto keeper = [&](size_t i, size_t at) {
+    for (size_t j = 0; j < asked.size(); ++j) {
+      if (j == i || !asked[j]) continue;
+      std::vector<std::optional<Flags>> alone(asked.size());
+      alone[j] = asked[j];
+      spread(links, &alone);
+      if (alone[i] && (*alone[i])[at]) return label_of(model.patches[j / 2]);
+    }
+    return std::string("a joined patch");
+  };
   for (size_t i = 0; i < asked.size(); ++i) {
     if (!asked[i] || asked[i] == flags[i]) continue;
     const Patch& patch = model.patches[i / 2];
@@ -150,8 +168,9 @@ std::vector<PatchScale> keep_knots(const PatchModel& model, const std::vector<Ke
     size_t at = 0;
     while ((*asked[i])[at] == (*flags[i])[at]) ++at;
     throw InputError("", "scale.knots of " + label_of(patch),
-                     std::string(i % 2 == 0 ? "u" : "v") + " knot " + std::to_string(breaks[at]) +
-                         " is left out here but kept by a list of a joined patch");
+                     std::string(i % 2 == 0 ? "u" : "v") + " knot " + print(breaks[at]) +
+                         " is left out here but kept by the list of " + keeper(i, at) +
+                         ", which is joined to it");
   }
   return build(model, flags);
 }
