@@ -3,41 +3,27 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "edit/fixtures.h"
 #include "isochor/base/error.h"
-#include "isochor/bspline/basis.h"
 #include "isochor/bspline/model_refinement.h"
 #include "isochor/bspline/refinement.h"
+#include "support/collocation.h"
 #include "support/messages.h"
-#include "support/splines.h"
 
 namespace isochor {
 namespace {
 
 using testing::at_scale;
 using testing::bent_cube;
+using testing::fitted_map;
 using ::testing::HasSubstr;
 using testing::message_of;
 using testing::prepared;
 using testing::random_vectors;
-
-Eigen::MatrixXd collocation(const KnotVector& knots, const std::vector<double>& samples) {
-  Eigen::MatrixXd values = Eigen::MatrixXd::Zero(static_cast<long>(samples.size()), knots.size());
-  for (size_t k = 0; k < samples.size(); ++k) {
-    const BasisValues b = evaluate_basis(knots, samples[k]);
-    for (int j = 0; j <= b.degree; ++j) values(static_cast<long>(k), b.first + j) = b.value(0, j);
-  }
-  return values;
-}
-
-// From coarse coefficients of one direction to fine ones, by least squares on samples.
-Eigen::MatrixXd fitted_map(const KnotVector& coarse, const KnotVector& fine) {
-  const std::vector<double> samples = testing::sample_parameters(fine, fine.degree() + 2);
-  return collocation(fine, samples).colPivHouseholderQr().solve(collocation(coarse, samples));
-}
 
 // The displacement of every point that patch q uses, axis by axis, from its own grid alone.
 std::vector<Vec3> displacement_by_fit(const PatchModel& model, const DisplacementSpace& space,

@@ -7,6 +7,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/bspline/joins.h"
+#include "support/messages.h"
 #include "support/models.h"
 
 namespace isochor {
@@ -113,12 +114,7 @@ TEST(ExtentSelection, BoxLoopFacesPolesPointsAll) {
 }
 
 std::string error_of(const Fixture& fixture, const Extent& extent) {
-  try {
-    fixture.count(extent);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return testing::message_of<InputError>([&] { fixture.count(extent); });
 }
 
 TEST(ExtentSelection, ThingsThatDoNotExistAreNamed) {
