@@ -11,6 +11,7 @@
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/refinement.h"
 #include "support/exact_splines.h"
+#include "support/locks.h"
 #include "support/models.h"
 #include "support/revolved.h"
 #include "support/splines.h"
@@ -20,6 +21,8 @@ namespace {
 
 using ::isochor::testing::all_small_knots;
 using ::isochor::testing::exact_basis;
+using ::isochor::testing::locked_points;
+using ::isochor::testing::shaken;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -95,31 +98,10 @@ TEST(ContinuityLocks, OrdersToProtect) {
   EXPECT_EQ(protected_order(Smoothness::kTangent, 25), 1);
 }
 
-std::set<int> locked_points(const PatchModel& model) {
-  std::set<int> points;
-  for (const Lock& lock : model.locks) points.insert(lock.point);
-  return points;
-}
-
 std::vector<std::string> reason_texts(const PatchModel& model) {
   std::vector<std::string> texts;
   for (const LockReason& reason : model.lock_reasons) texts.push_back(reason.text);
   return texts;
-}
-
-// Every point that is not locked, moved at random; tied points together.
-std::vector<Vec3> shaken(const PatchModel& model, double amount) {
-  std::mt19937 random(361);
-  const PointClasses classes = point_classes(model);
-  auto by = testing::random_points(random, classes.representative.size());
-  for (int point : locked_points(model)) {
-    by[static_cast<size_t>(classes.class_of[static_cast<size_t>(point)])] = Vec3::Zero();
-  }
-  std::vector<Vec3> at = model.points;
-  for (size_t i = 0; i < at.size(); ++i) {
-    at[i] += amount * by[static_cast<size_t>(classes.class_of[i])];
-  }
-  return at;
 }
 
 // A full cylinder whose direction around is periodic: double knots throughout, the seam included.

@@ -9,42 +9,19 @@
 
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/refinement.h"
+#include "support/locks.h"
 #include "support/models.h"
 #include "support/splines.h"
 
 namespace isochor {
 namespace {
 
+using ::isochor::testing::locked_points;
+using ::isochor::testing::shaken;
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-std::set<int> locked_points(const PatchModel& model, bool with_continuity) {
-  std::set<int> points;
-  for (const Lock& lock : model.locks) {
-    if (with_continuity || !model.lock_reasons[static_cast<size_t>(lock.reason)].continuity) {
-      points.insert(lock.point);
-    }
-  }
-  return points;
-}
-
-// Moves every point that is not locked, nor tied to a locked one, at random.
-std::vector<Vec3> shaken(const PatchModel& model, double amount, bool with_continuity = true) {
-  std::mt19937 random(71);
-  const PointClasses classes = point_classes(model);
-  std::vector<Vec3> by;
-  for (size_t c = 0; c < classes.representative.size(); ++c) {
-    by.emplace_back(amount * testing::random_points(random, 1)[0]);
-  }
-  for (int point : locked_points(model, with_continuity)) {
-    by[static_cast<size_t>(classes.class_of[static_cast<size_t>(point)])] = Vec3::Zero();
-  }
-  std::vector<Vec3> at = model.points;
-  for (size_t i = 0; i < at.size(); ++i) at[i] += by[static_cast<size_t>(classes.class_of[i])];
-  return at;
-}
 
 double largest_move(const PatchModel& model, const std::vector<Vec3>& at) {
   double largest = 0.0;

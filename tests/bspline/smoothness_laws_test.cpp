@@ -8,6 +8,7 @@
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/refinement.h"
 #include "isochor/bspline/smoothness.h"
+#include "support/locks.h"
 #include "support/models.h"
 #include "support/revolved.h"
 #include "support/splines.h"
@@ -181,14 +182,8 @@ TEST(SmoothnessLaws, LockedKnotLinesStayAsSmoothAsTheyWere) {
     const Surface surface = refine(smooth, with_knots(u, more), with_knots(v, {v.interior()[3]}));
     PatchModel model = testing::make_separate_model({surface});
     derive_locks(model);
-    std::set<int> locked;
-    for (const Lock& lock : model.locks) locked.insert(lock.point);
-    auto at = model.points;
-    for (size_t i = 0; i < at.size(); ++i) {
-      if (locked.count(static_cast<int>(i)) == 0) {
-        at[i] += 0.2 * testing::random_points(random, 1)[0];
-      }
-    }
+    const std::set<int> locked = testing::locked_points(model);
+    const auto at = testing::shaken(model, 0.2);
     EXPECT_LT(locked.size(), at.size());
     EXPECT_GT(locked.size(), 0u) << round;
     const double size = diagonal(model);

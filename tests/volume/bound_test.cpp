@@ -7,20 +7,18 @@
 #include "isochor/base/tolerance.h"
 #include "isochor/volume/exact_volume.h"
 #include "isochor/volume/volume_form.h"
+#include "support/bounds.h"
 #include "support/models.h"
 #include "support/worst.h"
 
 namespace isochor {
 namespace {
 
+using testing::error_of;
 using testing::random_closed_model;
 using testing::random_open_patch;
 using testing::RandomModelOptions;
 using testing::Worst;
-
-double error_of(const Bounded& computed, const Rational& exact) {
-  return (Rational(computed.value) - exact).abs().to_double();
-}
 
 // Degrees 1 to 6 mixed, clamped with multiplicities and unclamped, closed and open.
 std::vector<PatchModel> polynomial_models() {

@@ -8,15 +8,14 @@
 #include "isochor/bspline/refinement.h"
 #include "isochor/volume/exact_volume.h"
 #include "isochor/volume/volume_form.h"
+#include "support/bounds.h"
 #include "support/models.h"
 #include "support/splines.h"
 
 namespace isochor {
 namespace {
 
-double error_of(const Bounded& computed, const Rational& exact) {
-  return (Rational(computed.value) - exact).abs().to_double();
-}
+using ::isochor::testing::error_of;
 
 std::vector<Vec3> moved_by(std::mt19937& random, const std::vector<Vec3>& points,
                            const std::vector<int>& ids, double size) {

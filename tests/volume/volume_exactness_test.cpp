@@ -14,6 +14,7 @@
 #include "isochor/volume/exact_volume.h"
 #include "isochor/volume/theta.h"
 #include "isochor/volume/volume_form.h"
+#include "support/bounds.h"
 #include "support/messages.h"
 #include "support/models.h"
 #include "support/splines.h"
@@ -21,13 +22,10 @@
 namespace isochor {
 namespace {
 
+using ::isochor::testing::error_of;
 using ::isochor::testing::message_of;
 using ::isochor::testing::random_open_patch;
 using ::testing::HasSubstr;
-
-double error_of(const Bounded& computed, const Rational& exact) {
-  return (Rational(computed.value) - exact).abs().to_double();
-}
 
 PatchModel single_patch(const Surface& surface) { return testing::make_separate_model({surface}); }
 
