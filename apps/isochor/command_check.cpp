@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "commands.h"
 #include "isochor/base/error.h"
@@ -43,7 +44,7 @@ Measures measures_of(const LoadedModel& loaded) {
   for (const Join& join : loaded.patches.joins) {
     ++m.joins;
     m.gap = std::max(m.gap, join.max_gap);
-    m.angle = std::max(m.angle, join.max_angle_rad);
+    if (join.smoothness >= Smoothness::kAlmost) m.angle = std::max(m.angle, join.max_angle_rad);
   }
 #ifdef ISOCHOR_WITH_OCCT
   if (loaded.solid) {
@@ -100,6 +101,8 @@ Value compare(const LoadedModel& now, const LoadedModel& then, const Common& com
 
 int run_check(const CheckOptions& options, const Common& common) {
   const LoadedModel loaded = load_model(options.model, common);
+  std::optional<LoadedModel> original;
+  if (!options.against.empty()) original = load_model(options.against, common);
   const std::vector<std::string> findings = findings_of(loaded);
   const Measures m = measures_of(loaded);
   const std::string unit = loaded.patches.unit;
@@ -121,13 +124,12 @@ int run_check(const CheckOptions& options, const Common& common) {
                      .set("max_tolerance", m.tolerance)
                      .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())
                      .set("bound", loaded.volume_bound);
-  if (!options.against.empty()) {
-    const LoadedModel original = load_model(options.against, common);
+  if (original) {
     print(common, "against " + options.against + ":");
-    result.set("against", compare(loaded, original, common));
-    const double change = loaded.volume - original.volume;
+    result.set("against", compare(loaded, *original, common));
+    const double change = loaded.volume - original->volume;
     print(common, format("  volume: %.15g instead of %.15g, relative change %.3g", loaded.volume,
-                         original.volume, change / std::abs(original.volume)));
+                         original->volume, change / std::abs(original->volume)));
     result.set("volume_change", change);
   }
   print_json(common, result);

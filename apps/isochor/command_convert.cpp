@@ -40,7 +40,7 @@ template <typename Write>
 int finish_checked(const ConvertOptions& options, const Common& common, Write write) {
   const WriteReport report = write_busily(options, common, write);
   if (report.written) return finish(options, common, report.notices);
-  note(common, options.input + ": refused: " + report.refusal);
+  refuse(options.input + ": refused: " + report.refusal);
   print_json(common, Value::object().set("outcome", "refused").set("reason", report.refusal));
   return kExitNo;
 }

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <set>
 
@@ -14,6 +15,9 @@
 
 namespace isochor::app {
 namespace {
+
+// A pole that moves this many times farther than any place was asked to is worth a remark.
+constexpr double kFarPole = 5.0;
 
 // All patches that a script names: faces that are not B-spline yet are converted for it.
 std::vector<std::string> named_patches(const EditScript& script) {
@@ -61,10 +65,7 @@ std::vector<Certificate> apply_all(const EditScript& script, EditSession& sessio
 
 void print_certificate(const Certificate& c, const std::string& unit, const Common& common) {
   print(common, format("edit \"%s\": %s", c.name.c_str(), std::string(name_of(c.outcome)).c_str()));
-  if (c.outcome != Outcome::kDone) {
-    print(common, "  " + c.reason);
-    return;
-  }
+  if (c.outcome != Outcome::kDone) return;  // the reason goes to stderr
   print(common, format("  volume before    %.15g %s^3", c.volume.before, unit.c_str()));
   print(common, format("  volume after     %.15g %s^3", c.volume.after, unit.c_str()));
   print(common,
@@ -82,6 +83,14 @@ void print_certificate(const Certificate& c, const std::string& unit, const Comm
                        c.coefficients, c.rank, c.freedom_left));
   print(common, format("  moved poles      %d, at most by %.4g %s", c.poles_moved, c.max_distance,
                        unit.c_str()));
+  double asked = 0.0;
+  for (const MoveRecord& move : c.moves) asked = std::max(asked, move.asked.norm());
+  if (asked > 0.0 && c.max_distance > kFarPole * asked) {
+    note(common,
+         format("edit \"%s\": a pole moved %.2g times as far as asked, because the free poles "
+                "hardly act on the place: refine, or enlarge the extent",
+                c.name.c_str(), c.max_distance / asked));
+  }
   for (const LockRecord& lock : c.locked) {
     detail(common, format("locked in the extent: %d coefficients of %s: %s", lock.coefficients,
                           lock.patch.c_str(), lock.reason.c_str()));
@@ -91,6 +100,9 @@ void print_certificate(const Certificate& c, const std::string& unit, const Comm
 }  // namespace
 
 int run_edit(const EditOptions& options, const Common& common) {
+  require_writable(options.output);
+  if (!options.report.empty()) require_writable(options.report);
+  if (!options.picture.empty()) require_picture(options.picture);
   const EditScript script = read_script(options.edits);
   const std::vector<std::string> named = named_patches(script);
   const LoadedModel loaded = load_model(
@@ -130,8 +142,8 @@ int run_edit(const EditOptions& options, const Common& common) {
   for (const std::string& line : written.lines) print(common, line);
   if (outcome != Outcome::kDone) {
     const Certificate& last = certificates.back();
-    note(common, options.model + ": " + std::string(name_of(outcome)) + ": " +
-                     (written.refusal.empty() ? last.reason : written.refusal));
+    refuse(options.model + ": " + std::string(name_of(outcome)) + ": " +
+           (written.refusal.empty() ? last.reason : written.refusal));
     if (!options.report.empty()) print(common, "report:  " + options.report);
     return kExitNo;
   }

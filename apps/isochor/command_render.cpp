@@ -57,6 +57,7 @@ Image compare(const LoadedModel& model, const LoadedModel& other, const Common& 
 }  // namespace
 
 int run_render(const RenderOptions& options, const Common& common) {
+  require_picture(options.output);
   const LoadedModel model = load_model(options.model, common);
   Image image;
   if (options.compare.empty()) {

@@ -66,8 +66,9 @@ int run_suggest(const SuggestOptions& options, const Common& common) {
     }
   }
   if (!edit) {
-    note(common, options.model + ": refused: " + why_nothing_is_free(loaded, candidates));
-    print_json(common, Value::object().set("outcome", "refused"));
+    const std::string why = why_nothing_is_free(loaded, candidates);
+    refuse(options.model + ": refused: " + why);
+    print_json(common, Value::object().set("outcome", "refused").set("reason", why));
     return kExitNo;
   }
   const std::string text = format_edits({{*edit}});

@@ -30,35 +30,31 @@ std::string exact_text(const LoadedModel& loaded) {
 int run_volume(const VolumeOptions& options, const Common& common) {
   const LoadedModel loaded = load_model(options.model, common);
   if (!loaded.surroundings.closed && !options.open) {
-    note(common, options.model + ": the model is open (" + loaded.surroundings.why_open +
-                     ") and encloses no volume; --open prints the integral of z dx dy");
+    refuse(options.model + ": the model is open (" + loaded.surroundings.why_open +
+           ") and encloses no volume; --open prints the integral of z dx dy");
     print_json(common, Value::object()
                            .set("outcome", "refused")
                            .set("reason", "open: " + loaded.surroundings.why_open));
     return kExitNo;
   }
   Value result = Value::object().set("volume", loaded.volume).set("bound", loaded.volume_bound);
-  print(common, format("%.17g (error at most %.2g)", loaded.volume, loaded.volume_bound));
-  if (options.exact) {
-    std::string exact;
-    try {
-      exact = exact_text(loaded);
-    } catch (const InputError& error) {
-      throw error.in_file(options.model);
-    }
-    print(common, "exact: " + exact);
-    result.set("exact", exact);
-  } else {
-    result.set("exact", Value());
+  std::string exact;
+  try {
+    if (options.exact) exact = exact_text(loaded);
+  } catch (const InputError& error) {
+    throw error.in_file(options.model);
   }
+  result.set("exact", options.exact ? Value(exact) : Value());
   if (!options.gradient.empty()) {
     Value rows = Value::list();
     for (const Vec3& row : VolumeForm(loaded.patches).gradient(loaded.patches.points)) {
       rows.push(row);
     }
     write_file(options.gradient, to_json(rows, -1));
-    print(common, "gradient: " + options.gradient);
   }
+  print(common, format("%.17g (error at most %.2g)", loaded.volume, loaded.volume_bound));
+  if (options.exact) print(common, "exact: " + exact);
+  if (!options.gradient.empty()) print(common, "gradient: " + options.gradient);
   print_json(common, result);
   return kExitDone;
 }

@@ -116,6 +116,8 @@ int run(int argc, char** argv) {
 }  // namespace isochor::app
 
 int main(int argc, char** argv) {
+  // Results and remarks keep their order also where both go to one file.
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   try {
     return isochor::app::run(argc, argv);
   } catch (const isochor::InputError& error) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "busy_line.h"
+#include "isochor/base/error.h"
+#include "isochor/io/file.h"
 #include "isochor/io/image.h"
 #include "isochor/picture/edit_picture.h"
 #include "isochor/picture/tessellate.h"
@@ -62,6 +64,13 @@ ModelMesh mesh_of(const LoadedModel& model, const Common& common) {
   }
   add_other_faces(model, common, result.mesh, result.lines);
   return result;
+}
+
+void require_picture(const std::string& path) {
+  if (extension_of(path) != "png") {
+    throw InputError(path, "", "pictures are written as PNG; choose a name that ends in .png");
+  }
+  require_writable(path);
 }
 
 void write_edit_picture(const LoadedModel& before, const EditSession& session,

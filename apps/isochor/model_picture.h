@@ -15,6 +15,9 @@ void write_edit_picture(const LoadedModel& before, const EditSession& session,
                         const std::vector<Certificate>& certificates, const std::string& path,
                         const Common& common);
 
+// Throws InputError unless a PNG file can be written there.
+void require_picture(const std::string& path);
+
 // Triangles and borders of a whole model, also of faces that are no patches.
 struct ModelMesh {
   Mesh mesh;

@@ -13,6 +13,8 @@ void print_json(const Common& common, const Value& value) {
   if (common.json) std::fputs(to_json(value).c_str(), stdout);
 }
 
+void refuse(const std::string& line) { std::fprintf(stderr, "isochor: %s\n", line.c_str()); }
+
 void note(const Common& common, const std::string& line) {
   if (!common.quiet) std::fprintf(stderr, "isochor: %s\n", line.c_str());
 }

@@ -13,6 +13,8 @@ namespace isochor::app {
 void print(const Common& common, const std::string& line);
 // The result as JSON when --json asks for it.
 void print_json(const Common& common, const Value& value);
+// Why the answer is no, on stderr, also with --quiet.
+void refuse(const std::string& line);
 // A remark on stderr; nothing with --quiet.
 void note(const Common& common, const std::string& line);
 // A remark only for --verbose.

@@ -12,7 +12,7 @@ import subprocess
 import sys
 import unittest
 
-ISOCHOR, SOURCE, WORK = sys.argv[1], pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+ISOCHOR, SOURCE, WORK = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 CUBE = SOURCE / "data/step/cube.isochor.json"
 HULL = SOURCE / "data/step/hull.step"
 PULL = SOURCE / "data/edits/cube_figure4.json"
@@ -113,7 +113,7 @@ class Volume(Scenario):
         self.assertAlmostEqual(self.run_json("volume", model, "--open")["volume"], 1, delta=1e-12)
 
     def test_models_that_are_not_polynomial_patches_have_no_rational_volume(self):
-        self.expect(3, "volume", HULL, "--exact", "--json", says="omit --exact")
+        self.expect(3, "volume", HULL, "--exact", says="omit --exact")
 
 
 class SuggestAndEdit(Scenario):
@@ -155,6 +155,31 @@ class SuggestAndEdit(Scenario):
         self.assertIn(report["outcome"], ("refused", "infeasible"))
         self.assertTrue(report["edits"][-1]["reason"])
 
+    def test_a_refusal_says_why_once_also_when_quiet(self):
+        edits = json.loads(PULL.read_text())
+        edits["edits"][0]["extent"] = {"radius": 1e-9}
+        (WORK / "none.json").write_text(json.dumps(edits))
+        for words in ([], ["-q"]):
+            done = isochor("edit", CUBE, "none.json", "-o", "out.isochor.json", *words)
+            self.assertEqual(done.returncode, 1)
+            self.assertEqual((done.stdout + done.stderr).count("no free coefficient"), 1)
+
+    def test_a_pole_that_goes_far_is_worth_a_remark(self):
+        edits = json.loads(PULL.read_text())
+        edit = edits["edits"][0]
+        edit["extent"] = {"poles": {"top": [[10, 10]]}}
+        edit["volume"] = "free"
+        (WORK / "far.json").write_text(json.dumps(edits))
+        done = isochor("edit", CUBE, "far.json", "-o", "far.isochor.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stderr, r"a pole moved [0-9.e+]+ times as far as asked")
+        self.assertEqual(isochor("edit", CUBE, PULL, "-o", "near.isochor.json").stderr, "")
+
+    def test_nothing_is_written_unless_all_can_be(self):
+        for words in (["--report", "nowhere/report.json"], ["--picture", "nowhere/picture.png"],
+                      ["--picture", "picture.jpg"]):
+            self.expect(3, "edit", CUBE, PULL, "-o", "out.isochor.json", *words, says=words[1])
+
     def test_formats_that_cannot_be_written_leave_nothing(self):
         self.expect(3, "edit", CUBE, PULL, "-o", "out.stl", says="cannot write this format")
         self.expect(3, "edit", CUBE, PULL, "-o", "nowhere/out.isochor.json", says="nowhere")
@@ -166,6 +191,7 @@ class Check(Scenario):
         self.assertLessEqual({"valid", "findings", "closed", "max_gap", "max_tolerance", "volume",
                               "bound"}, set(check))
         self.assertEqual((check["valid"], check["findings"], check["max_gap"]), (True, [], 0))
+        self.assertEqual(check["max_smooth_angle_rad"], 0, "no edge of the cube is a smooth one")
         check = self.run_json("check", self.open_cube(), code=1)
         self.assertEqual((check["valid"], check["closed"], check["volume"]), (False, False, None))
         self.assertEqual(len(check["findings"]), 4)
@@ -254,6 +280,7 @@ class Render(Scenario):
 
     def test_nowhere_to_write(self):
         self.expect(3, "render", CUBE, "-o", "nowhere/a.png", says="nowhere")
+        self.expect(3, "render", CUBE, "-o", "a.jpg", says=".png")
 
 
 class Usage(Scenario):
@@ -269,7 +296,7 @@ class Usage(Scenario):
             self.expect(3, command, "nowhere.step", says="nowhere.step")
         self.expect(3, "render", "nowhere.step", "-o", "a.png", says="nowhere.step")
         self.expect(3, "convert", "nowhere.step", "a.brep", says="nowhere.step")
-        self.expect(3, "check", CUBE, "--against", "nowhere.step", "--json", says="nowhere.step")
+        self.expect(3, "check", CUBE, "--against", "nowhere.step", says="nowhere.step")
 
     def test_quiet_is_silent(self):
         for words in (["info", CUBE], ["check", CUBE], ["suggest", CUBE, "-o", "edits.json"],

@@ -171,17 +171,18 @@ class Solver {
     return std::abs(missing) <= kVolumeKept * problem_.volume_scale;
   }
 
-  // A correction larger than the model is no answer a designer could want.
+  // A change larger than the model is no answer a designer could want.
   void check_size() {
     double largest = 0.0;
     for (const Vec3& d : result_.delta) largest = std::max(largest, d.norm());
     double asked = 0.0;
     for (const LinearConstraint& c : problem_.constraints) asked = std::max(asked, c.value.norm());
     if (largest <= problem_.size + 10.0 * asked) return;
+    const std::string goal = problem_.volume_free ? "reaching what is asked" : "keeping the volume";
     stop(Outcome::kUndecided,
-         "keeping the volume within this extent would move control points by " + print(largest) +
+         goal + " within this extent would move control points by " + print(largest) +
              ", more than the size of the model: enlarge the extent",
-         {"volume"});
+         problem_.volume_free ? constraint_names() : std::vector<std::string>{"volume"});
   }
 
   void isotropic() {

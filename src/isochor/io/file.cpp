@@ -47,6 +47,16 @@ void move_into_place(const std::string& temporary, const std::string& path) {
   }
 }
 
+void require_writable(const std::string& path) {
+  if (fs::is_directory(path)) throw InputError(path, "", "is a directory");
+  const std::string temporary = temporary_path_beside(path);
+  const bool made = std::ofstream(temporary, std::ios::binary).good();
+  const std::string why = std::strerror(errno);
+  std::error_code ignored;
+  fs::remove(temporary, ignored);
+  if (!made) throw InputError(path, "", "cannot be written: " + why);
+}
+
 void write_file(const std::string& path, std::string_view content) {
   const std::string temporary = temporary_path_beside(path);
   {

@@ -13,6 +13,10 @@ std::string read_file(const std::string& path);
 // of `content`, or what it held before. Throws InputError when the directory cannot be written.
 void write_file(const std::string& path, std::string_view content);
 
+// Throws InputError when no file can be made there (no such folder, not writable, a folder itself):
+// for work that writes several files and should not stop after the first.
+void require_writable(const std::string& path);
+
 // A path beside `path` that does not exist yet, for writers that need a file name of their own.
 // The extension is kept, because some writers choose the format by it.
 std::string temporary_path_beside(const std::string& path);
