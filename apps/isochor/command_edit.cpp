@@ -8,6 +8,7 @@
 #include "isochor/base/error.h"
 #include "isochor/io/edits_json.h"
 #include "isochor/io/file.h"
+#include "isochor/io/report_html.h"
 #include "isochor/io/report_json.h"
 #include "model_picture.h"
 #include "model_source.h"
@@ -97,12 +98,40 @@ void print_certificate(const Certificate& c, const std::string& unit, const Comm
   }
 }
 
-}  // namespace
-
-int run_edit(const EditOptions& options, const Common& common) {
+void require_outputs(const EditOptions& options) {
   require_writable(options.output);
   if (!options.report.empty()) require_writable(options.report);
   if (!options.picture.empty()) require_picture(options.picture);
+  if (!options.html.empty()) require_writable(options.html);
+}
+
+// What the command leaves besides the model.
+struct Account {
+  Outcome outcome = Outcome::kDone;
+  std::string refusal;  // of the written file
+  Value::Object extra;  // further keys of the report
+  std::vector<std::string> lines;
+  std::string png;
+};
+
+void write_account(const EditOptions& options, const LoadedModel& loaded,
+                   const std::vector<Certificate>& certificates, const Account& account,
+                   const Common& common) {
+  const std::string report = format_report(certificates, account.outcome, account.extra);
+  if (!options.report.empty()) write_file(options.report, report);
+  if (!options.picture.empty() && !account.png.empty()) write_file(options.picture, account.png);
+  if (!options.html.empty()) {
+    write_file(options.html,
+               format_html({options.model, loaded.patches.unit, account.outcome, account.refusal,
+                            certificates, account.lines, account.png, report}));
+  }
+  if (common.json) std::fputs(report.c_str(), stdout);
+}
+
+}  // namespace
+
+int run_edit(const EditOptions& options, const Common& common) {
+  require_outputs(options);
   const EditScript script = read_script(options.edits);
   const std::vector<std::string> named = named_patches(script);
   const LoadedModel loaded = load_model(
@@ -114,43 +143,44 @@ int run_edit(const EditOptions& options, const Common& common) {
   }
   EditSession session(loaded.patches, loaded.surroundings);
   const std::vector<Certificate> certificates = apply_all(script, session, options.edits, common);
-  Outcome outcome = overall_outcome(certificates);
 
-  WrittenModel written;
-  Value::Object extra = {{"model", Value(options.model)}, {"edits_file", Value(options.edits)}};
-  if (outcome == Outcome::kDone) {
-    written = write_edited_model(loaded, session, options.output, common);
-    extra.insert(extra.end(), written.report.begin(), written.report.end());
+  Account account;
+  account.outcome = overall_outcome(certificates);
+  account.extra = {{"model", Value(options.model)}, {"edits_file", Value(options.edits)}};
+  if (account.outcome == Outcome::kDone) {
+    if (!options.picture.empty() || !options.html.empty()) {
+      account.png = encode_png(draw_edit(loaded, session, certificates, common));
+    }
+    WrittenModel written = write_edited_model(loaded, session, options.output, common);
+    account.extra.insert(account.extra.end(), written.report.begin(), written.report.end());
+    account.lines = std::move(written.lines);
     if (written.written) {
-      extra.emplace_back("output", options.output);
-      if (!options.picture.empty()) {
-        write_edit_picture(loaded, session, certificates, options.picture, common);
-        extra.emplace_back("picture", options.picture);
-      }
+      account.extra.emplace_back("output", options.output);
+      if (!options.picture.empty()) account.extra.emplace_back("picture", options.picture);
     } else {
-      outcome = Outcome::kRefused;
-      extra.emplace_back("refusal", written.refusal);
+      account.outcome = Outcome::kRefused;
+      account.refusal = written.refusal;
+      account.extra.emplace_back("refusal", written.refusal);
+      account.png.clear();
     }
   }
-  const std::string report = format_report(certificates, outcome, extra);
-  if (!options.report.empty()) write_file(options.report, report);
-  if (common.json) std::fputs(report.c_str(), stdout);
+  write_account(options, loaded, certificates, account, common);
 
   for (const Certificate& certificate : certificates) {
     print_certificate(certificate, loaded.patches.unit, common);
   }
-  for (const std::string& line : written.lines) print(common, line);
-  if (outcome != Outcome::kDone) {
-    const Certificate& last = certificates.back();
-    refuse(options.model + ": " + std::string(name_of(outcome)) + ": " +
-           (written.refusal.empty() ? last.reason : written.refusal));
-    if (!options.report.empty()) print(common, "report:  " + options.report);
-    return kExitNo;
+  for (const std::string& line : account.lines) print(common, line);
+  const bool done = account.outcome == Outcome::kDone;
+  if (!done) {
+    refuse(options.model + ": " + std::string(name_of(account.outcome)) + ": " +
+           (account.refusal.empty() ? certificates.back().reason : account.refusal));
+  } else {
+    print(common, "model:   " + options.output);
   }
-  print(common, "model:   " + options.output);
   if (!options.report.empty()) print(common, "report:  " + options.report);
-  if (!options.picture.empty()) print(common, "picture: " + options.picture);
-  return kExitDone;
+  if (done && !options.picture.empty()) print(common, "picture: " + options.picture);
+  if (!options.html.empty()) print(common, "page:    " + options.html);
+  return done ? kExitDone : kExitNo;
 }
 
 }  // namespace isochor::app

@@ -40,7 +40,7 @@ struct SuggestOptions {
 int run_suggest(const SuggestOptions& options, const Common& common);
 
 struct EditOptions {
-  std::string model, edits, output, report, picture;
+  std::string model, edits, output, report, picture, html;
 };
 int run_edit(const EditOptions& options, const Common& common);
 

@@ -77,6 +77,7 @@ int run(int argc, char** argv) {
   sub->add_option("-o,--output", edit.output, "model to write")->required();
   sub->add_option("--report", edit.report, "report to write (JSON)");
   sub->add_option("--picture", edit.picture, "picture to write (PNG): before, after, difference");
+  sub->add_option("--html", edit.html, "page to write (HTML): numbers, checks and the picture");
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_edit(edit, common); }; });
 

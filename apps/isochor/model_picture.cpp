@@ -73,10 +73,9 @@ void require_picture(const std::string& path) {
   require_writable(path);
 }
 
-void write_edit_picture(const LoadedModel& before, const EditSession& session,
-                        const std::vector<Certificate>& certificates, const std::string& path,
-                        const Common& common) {
-  const BusyLine busy(common, "drawing " + path);
+Image draw_edit(const LoadedModel& before, const EditSession& session,
+                const std::vector<Certificate>& certificates, const Common& common) {
+  const BusyLine busy(common, "drawing the edit");
   // Cut on the edited shape, so that the cells are fine enough for it, and evaluated on both.
   const PatchModel& now = session.model();
   const std::vector<Surface> then = surfaces_of(before.patches);
@@ -126,7 +125,7 @@ void write_edit_picture(const LoadedModel& before, const EditSession& session,
   input.caption = {format("volume before %.12g %s\u00b3", first.before, unit),
                    format("volume after %.12g %s\u00b3", last.after, unit),
                    format("relative change %.2g", change)};
-  write_png(path, edit_picture(input));
+  return edit_picture(input);
 }
 
 }  // namespace isochor::app

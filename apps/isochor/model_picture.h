@@ -5,15 +5,15 @@
 #include <vector>
 
 #include "isochor/edit/edit_session.h"
+#include "isochor/io/image.h"
 #include "isochor/io/mesh.h"
 #include "model_source.h"
 
 namespace isochor::app {
 
-// Before, after and signed displacement side by side, in a PNG file.
-void write_edit_picture(const LoadedModel& before, const EditSession& session,
-                        const std::vector<Certificate>& certificates, const std::string& path,
-                        const Common& common);
+// Before, after and signed displacement side by side.
+Image draw_edit(const LoadedModel& before, const EditSession& session,
+                const std::vector<Certificate>& certificates, const Common& common);
 
 // Throws InputError unless a PNG file can be written there.
 void require_picture(const std::string& path);

@@ -3,6 +3,7 @@
 
 usage: cli_test.py ISOCHOR SOURCE_FOLDER WORK_FOLDER [unittest options]
 """
+import base64
 import json
 import math
 import pathlib
@@ -16,6 +17,7 @@ ISOCHOR, SOURCE, WORK = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 CUBE = SOURCE / "data/step/cube.isochor.json"
 HULL = SOURCE / "data/step/hull.step"
 PULL = SOURCE / "data/edits/cube_figure4.json"
+HULL_PULL = SOURCE / "data/edits/hull_pull.json"
 
 
 def isochor(*words):
@@ -175,9 +177,26 @@ class SuggestAndEdit(Scenario):
         self.assertRegex(done.stderr, r"a pole moved [0-9.e+]+ times as far as asked")
         self.assertEqual(isochor("edit", CUBE, PULL, "-o", "near.isochor.json").stderr, "")
 
+    def test_the_page_holds_numbers_checks_and_picture(self):
+        self.expect(0, "edit", HULL, HULL_PULL, "-o", "hull.step", "--html", "page.html",
+                    leaves={"hull.step", "page.html"})
+        page = (WORK / "page.html").read_text(encoding="utf-8")
+        for text in ("759.334406376", "fuller shoulders", "isochor_report", "<li>check: valid"):
+            self.assertIn(text, page)
+        picture = page.split("base64,", 1)[1].split('"', 1)[0]
+        self.assertEqual(base64.b64decode(picture, validate=True)[:8], b"\x89PNG\r\n\x1a\n")
+
+    def test_a_refusal_has_a_page_too(self):
+        edits = json.loads(PULL.read_text())
+        edits["edits"][0]["extent"] = {"radius": 1e-9}
+        (WORK / "none.json").write_text(json.dumps(edits))
+        self.expect(1, "edit", CUBE, "none.json", "-o", "out.isochor.json", "--html", "page.html",
+                    says="no free coefficient", leaves={"page.html"})
+        self.assertIn("no free coefficient", (WORK / "page.html").read_text(encoding="utf-8"))
+
     def test_nothing_is_written_unless_all_can_be(self):
         for words in (["--report", "nowhere/report.json"], ["--picture", "nowhere/picture.png"],
-                      ["--picture", "picture.jpg"]):
+                      ["--picture", "picture.jpg"], ["--html", "nowhere/page.html"]):
             self.expect(3, "edit", CUBE, PULL, "-o", "out.isochor.json", *words, says=words[1])
 
     def test_formats_that_cannot_be_written_leave_nothing(self):
