@@ -5,7 +5,9 @@
 
 #include <vector>
 
+#include "isochor/volume/contraction.h"
 #include "isochor/volume/exact_volume.h"
+#include "isochor/volume/theta.h"
 #include "isochor/volume/volume_form.h"
 #include "support/models.h"
 
@@ -48,6 +50,26 @@ void value_and_gradient(benchmark::State& state) {
   count_points(state, model);
 }
 BENCHMARK(value_and_gradient)->Arg(12)->Arg(29)->Arg(61)->Unit(benchmark::kMicrosecond);
+
+void value_and_gradient_by_contraction(benchmark::State& state) {
+  const PatchModel model = cube(state);
+  const VolumeContraction contraction(model);
+  for (auto _ : state) benchmark::DoNotOptimize(contraction.value_and_gradient(model.points));
+  count_points(state, model);
+}
+BENCHMARK(value_and_gradient_by_contraction)
+    ->Arg(12)
+    ->Arg(29)
+    ->Arg(61)
+    ->Unit(benchmark::kMicrosecond);
+
+// As published: theta tensors in both directions (Sauvage et al. 2008, eq. 13).
+void gradient_as_published(benchmark::State& state) {
+  const PatchModel model = cube(state);
+  for (auto _ : state) benchmark::DoNotOptimize(theta_gradient(model, model.points));
+  count_points(state, model);
+}
+BENCHMARK(gradient_as_published)->Arg(12)->Unit(benchmark::kMicrosecond);
 
 void gradient_around_one_pole(benchmark::State& state) {
   const PatchModel model = cube(state);

@@ -1,0 +1,180 @@
+#include "isochor/volume/contraction.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "isochor/base/error.h"
+#include "isochor/volume/exact_volume.h"
+#include "isochor/volume/volume_form.h"
+#include "support/models.h"
+#include "support/splines.h"
+#include "support/worst.h"
+
+namespace isochor {
+namespace {
+
+using testing::make_box_model;
+using testing::make_cube_model;
+using testing::make_periodic_torus;
+using testing::random_clamped_knots;
+using testing::random_closed_model;
+using testing::Worst;
+
+double largest(const std::vector<Vec3>& rows) {
+  double norm = 0.0;
+  for (const Vec3& row : rows) norm = std::max(norm, row.cwiseAbs().maxCoeff());
+  return norm;
+}
+
+// The largest difference of two gradients, relative to the largest entry of the second.
+double difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double worst = a.size() == b.size() ? 0.0 : 1e300;
+  for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    worst = std::max(worst, (a[i] - b[i]).cwiseAbs().maxCoeff());
+  }
+  return worst / largest(b);
+}
+
+TEST(Tau, SymmetryAndPartition) {
+  for (int degree : {1, 2, 3, 6, 13}) {
+    const KnotVector knots = random_clamped_knots(70 + static_cast<unsigned>(degree), degree, 4);
+    const TauTensor tau(knots);
+    for (int j = 0; j + 1 < tau.size(); ++j) {
+      double sum = 0.0;
+      for (int i = 0; i < tau.size(); ++i) {
+        for (int k = 0; k < tau.size(); ++k) {
+          EXPECT_EQ(tau(i, k, j), tau(k, i, j));
+          sum += tau(i, k, j);
+        }
+      }
+      EXPECT_NEAR(sum, 1.0, 1e-13) << "degree " << degree << ", j " << j;
+    }
+  }
+}
+
+TEST(Tau, LinearSpanByHand) {
+  // B_0 = 1 - t, B_1 = t and b_0 = 1 on [0, 1].
+  const TauTensor tau(KnotVector::uniform(1, 1));
+  EXPECT_DOUBLE_EQ(tau(0, 0, 0), 1.0 / 3);
+  EXPECT_DOUBLE_EQ(tau(0, 1, 0), 1.0 / 6);
+  EXPECT_DOUBLE_EQ(tau(1, 1, 0), 1.0 / 3);
+}
+
+TEST(Tau, VanishesOffTheBand) {
+  const TauTensor tau(KnotVector::uniform(2, 6));
+  EXPECT_EQ(tau(0, 3, 0), 0.0);
+  EXPECT_EQ(tau(0, 0, 2), 0.0);
+  EXPECT_EQ(tau(5, 5, 2), 0.0);
+  EXPECT_NE(tau(5, 5, 3), 0.0);
+}
+
+TEST(Contraction, SecondMethod) {
+  Worst value("contraction_value", 1e-14), gradient("contraction_gradient", 5e-14);
+  std::mt19937 random(71);
+  std::uniform_int_distribution<int> degree(1, 6);
+  for (unsigned seed = 0; seed < 40; ++seed) {
+    testing::RandomModelOptions options;
+    for (int& d : options.degrees) d = degree(random);
+    options.spans = 1 + static_cast<int>(seed % 4);
+    const PatchModel model = random_closed_model(7000 + seed, options);
+    const ValueAndGradient fast = VolumeContraction(model).value_and_gradient(model.points);
+    const ValueAndGradient gauss = VolumeForm(model).value_and_gradient(model.points);
+    EXPECT_TRUE(value.see(std::abs(fast.value - gauss.value) / std::abs(gauss.value))) << seed;
+    EXPECT_TRUE(gradient.see(difference(fast.gradient, gauss.gradient))) << seed;
+  }
+}
+
+TEST(Contraction, ExactRationals) {
+  Worst value("contraction_exact_value", 5e-15), gradient("contraction_exact_gradient", 5e-15);
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    testing::RandomModelOptions options;
+    options.degrees[seed % 3] = 1 + static_cast<int>(seed % 6);
+    options.spans = 2;
+    const PatchModel model = random_closed_model(7100 + seed, options);
+    const ExactVolume exact(model);
+    const ValueAndGradient fast = VolumeContraction(model).value_and_gradient(model.points);
+    const double volume = exact.value(model.points).to_double();
+    EXPECT_TRUE(value.see(std::abs(fast.value - volume) / std::abs(volume))) << seed;
+    std::vector<Vec3> rows;
+    for (const ExactVec3& row : exact.gradient(model.points)) {
+      rows.emplace_back(row[0].to_double(), row[1].to_double(), row[2].to_double());
+    }
+    EXPECT_TRUE(gradient.see(difference(fast.gradient, rows))) << seed;
+  }
+}
+
+TEST(Contraction, HighAndUnequalDegrees) {
+  for (const auto& [du, dv] : {std::pair(13, 7), std::pair(22, 1), std::pair(1, 25)}) {
+    const PatchModel model =
+        make_box_model(random_clamped_knots(72, du, 2), random_clamped_knots(73, dv, 2),
+                       random_clamped_knots(74, 2, 3));
+    const ValueAndGradient fast = VolumeContraction(model).value_and_gradient(model.points);
+    EXPECT_NEAR(fast.value, 1.0, 1e-13);
+    EXPECT_LT(difference(fast.gradient, VolumeForm(model).gradient(model.points)), 1e-12);
+  }
+}
+
+TEST(Contraction, UnclampedPeriodicTorus) {
+  const PatchModel model = make_periodic_torus(3, 2, 9, 7, 2.0, 0.5);
+  const ValueAndGradient fast = VolumeContraction(model).value_and_gradient(model.points);
+  const ValueAndGradient gauss = VolumeForm(model).value_and_gradient(model.points);
+  EXPECT_NEAR(fast.value, gauss.value, 1e-14 * std::abs(gauss.value));
+  EXPECT_LT(difference(fast.gradient, gauss.gradient), 1e-14);
+}
+
+TEST(Contraction, TranslationChangesNoBit) {
+  PatchModel model = make_cube_model(3, 5);
+  // Multiples of 2^-20, so that a shift by a power of two is exact.
+  std::mt19937 random(75);
+  for (Vec3& p : model.points) {
+    for (int axis = 0; axis < 3; ++axis) {
+      p[axis] = std::round((p[axis] + testing::uniform(random, -0.05, 0.05)) * 0x1p20) * 0x1p-20;
+    }
+  }
+  const VolumeContraction contraction(model);
+  const ValueAndGradient here = contraction.value_and_gradient(model.points);
+  std::vector<Vec3> there = model.points;
+  for (Vec3& p : there) p += Vec3(0x1p20, -0x1p22, 0x1p24);
+  const ValueAndGradient far = contraction.value_and_gradient(there);
+  EXPECT_EQ(far.gradient, here.gradient);
+  EXPECT_EQ(far.value, here.value);
+}
+
+TEST(Contraction, GradientIsTheDerivative) {
+  const PatchModel model = random_closed_model(76);
+  const VolumeContraction contraction(model);
+  const ValueAndGradient at = contraction.value_and_gradient(model.points);
+  std::mt19937 random(77);
+  std::vector<Vec3> direction(model.points.size());
+  for (Vec3& d : direction) {
+    for (int axis = 0; axis < 3; ++axis) d[axis] = testing::uniform(random, -1.0, 1.0);
+  }
+  double slope = 0.0;
+  for (size_t i = 0; i < direction.size(); ++i) slope += direction[i].dot(at.gradient[i]);
+  const auto moved = [&](double t) {
+    std::vector<Vec3> points = model.points;
+    for (size_t i = 0; i < points.size(); ++i) points[i] += t * direction[i];
+    return contraction.value_and_gradient(points).value;
+  };
+  // Central differences of a cubic are wrong by t^2 times its third coefficient.
+  const double t = 1e-4;
+  EXPECT_NEAR((moved(t) - moved(-t)) / (2 * t), slope, 1e-6);
+}
+
+TEST(Contraction, OrientationAndErrors) {
+  PatchModel model = make_cube_model(2, 3);
+  for (Patch& patch : model.patches) patch.reversed = !patch.reversed;
+  EXPECT_NEAR(VolumeContraction(model).value_and_gradient(model.points).value, -1.0, 1e-14);
+  const VolumeContraction contraction(model);
+  EXPECT_THROW((void)contraction.value_and_gradient({}), PreconditionError);
+  PatchModel open = make_cube_model(2, 3);
+  open.patches.pop_back();
+  EXPECT_THROW(VolumeContraction{open}, PreconditionError);
+  EXPECT_THROW(VolumeContraction{testing::make_sphere(1.0)}, PreconditionError);
+}
+
+}  // namespace
+}  // namespace isochor
