@@ -245,7 +245,7 @@ TEST(WriteEditedShapes, LimitsApply) {
   internal::WriteJob job;
   job.input = "in.step";
   job.source = []() -> Document {
-    for (volatile int k = 0;; k = k + 1) {
+    for (volatile unsigned k = 0;; k = k + 1) {
     }
   };
   job.output = folder.file("out.step");
