@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -170,10 +171,160 @@ TEST(Contraction, OrientationAndErrors) {
   EXPECT_NEAR(VolumeContraction(model).value_and_gradient(model.points).value, -1.0, 1e-14);
   const VolumeContraction contraction(model);
   EXPECT_THROW((void)contraction.value_and_gradient({}), PreconditionError);
-  PatchModel open = make_cube_model(2, 3);
-  open.patches.pop_back();
-  EXPECT_THROW(VolumeContraction{open}, PreconditionError);
+  EXPECT_THROW((void)contraction.gradient_column(model.points, 3), PreconditionError);
   EXPECT_THROW(VolumeContraction{testing::make_sphere(1.0)}, PreconditionError);
+}
+
+// Removes a face and lifts the model, so that every rim integral counts.
+PatchModel open_model(unsigned seed) {
+  testing::RandomModelOptions options;
+  options.degrees[seed % 3] = 1 + static_cast<int>(seed % 5);
+  PatchModel model = random_closed_model(seed, options);
+  model.patches.erase(model.patches.begin() + seed % 6);
+  for (Vec3& p : model.points) p.z() += 0.4;
+  return model;
+}
+
+TEST(Contraction, OpenModelsHaveTheRimOnTop) {
+  Worst gradient("contraction_open_gradient", 1e-14);
+  for (unsigned seed = 7200; seed < 7212; ++seed) {
+    const PatchModel model = open_model(seed);
+    const VolumeContraction contraction(model);
+    EXPECT_FALSE(contraction.closed());
+    const ExactVolume exact(model);
+    const ValueAndGradient fast = contraction.value_and_gradient(model.points);
+    EXPECT_NEAR(fast.value, exact.value(model.points).to_double(), 1e-14);
+    std::vector<Vec3> rows;
+    for (const ExactVec3& row : exact.gradient(model.points)) {
+      rows.emplace_back(row[0].to_double(), row[1].to_double(), row[2].to_double());
+    }
+    EXPECT_TRUE(gradient.see(difference(fast.gradient, rows))) << seed;
+  }
+}
+
+TEST(Contraction, HeightsAreMeasuredFromThePlaneGiven) {
+  PatchModel model = open_model(7220);
+  const ValueAndGradient from = VolumeContraction(model).value_and_gradient(model.points, 0.7);
+  for (Vec3& p : model.points) p.z() -= 0.7;
+  const ValueAndGradient lowered = VolumeContraction(model).value_and_gradient(model.points);
+  EXPECT_NEAR(from.value, lowered.value, 1e-14);
+  EXPECT_LT(difference(from.gradient, lowered.gradient), 1e-14);
+}
+
+TEST(Contraction, UnclampedOpenPatch) {
+  std::mt19937 random(78);
+  const KnotVector u = testing::random_unclamped(random, 3),
+                   v = testing::random_unclamped(random, 2);
+  PatchModel model;
+  Patch patch{"sheet", "face:1", u, v, {}, {}, true, {}, {}};
+  for (int k = 0; k < u.size() * v.size(); ++k) patch.points.push_back(k);
+  model.points = testing::random_points(random, patch.points.size());
+  model.patches = {patch};
+  const ValueAndGradient fast = VolumeContraction(model).value_and_gradient(model.points);
+  const ExactVolume exact(model);
+  EXPECT_NEAR(fast.value, exact.value(model.points).to_double(), 1e-13);
+  std::vector<Vec3> rows;
+  for (const ExactVec3& row : exact.gradient(model.points)) {
+    rows.emplace_back(row[0].to_double(), row[1].to_double(), row[2].to_double());
+  }
+  EXPECT_LT(difference(fast.gradient, rows), 1e-13);
+}
+
+// Wide enough for several strips, tall enough for several tasks.
+PatchModel wavy_sheet(int du, int dv, int rows, int columns) {
+  PatchModel model;
+  Patch patch{"sheet",
+              "face:1",
+              KnotVector::uniform(du, rows - du),
+              KnotVector::uniform(dv, columns - dv),
+              {},
+              {},
+              false,
+              {},
+              {}};
+  std::mt19937 random(79);
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      patch.points.push_back(static_cast<int>(model.points.size()));
+      model.points.emplace_back(i + testing::uniform(random, -0.3, 0.3),
+                                j + testing::uniform(random, -0.3, 0.3),
+                                testing::uniform(random, 0.0, 1.0));
+    }
+  }
+  model.patches = {patch};
+  return model;
+}
+
+TEST(Contraction, ThreadsChangeNoBit) {
+  for (InstructionSet set : {InstructionSet::kPortable, best_instruction_set()}) {
+    for (const PatchModel& model : {wavy_sheet(3, 2, 530, 300), make_cube_model(3, 9)}) {
+      const VolumeContraction contraction(model, set);
+      const ValueAndGradient one = contraction.value_and_gradient(model.points, 0.0, 1);
+      for (int threads : {2, 3, 8}) {
+        const ValueAndGradient many = contraction.value_and_gradient(model.points, 0.0, threads);
+        EXPECT_EQ(many.value, one.value) << threads;
+        EXPECT_EQ(many.gradient, one.gradient) << threads;
+        EXPECT_EQ(contraction.value(model.points, 0.0, threads), contraction.value(model.points));
+      }
+    }
+  }
+}
+
+TEST(Contraction, InstructionSetsDifferByRounding) {
+  for (int degree : {1, 2, 3, 4, 5, 6, 7}) {
+    const PatchModel model = wavy_sheet(degree, 8 - degree, 23, 71);
+    const auto portable =
+        VolumeContraction(model, InstructionSet::kPortable).value_and_gradient(model.points);
+    const auto best = VolumeContraction(model).value_and_gradient(model.points);
+    EXPECT_NEAR(portable.value, best.value, 1e-13 * std::abs(best.value)) << degree;
+    EXPECT_LT(difference(portable.gradient, best.gradient), 1e-14) << degree;
+  }
+}
+
+TEST(Contraction, OneColumnAloneHasItsBits) {
+  for (const PatchModel& model :
+       {wavy_sheet(4, 3, 20, 140), make_cube_model(2, 6), open_model(3)}) {
+    const VolumeContraction contraction(model);
+    const ValueAndGradient all = contraction.value_and_gradient(model.points, 0.25);
+    EXPECT_EQ(contraction.value(model.points, 0.25), all.value);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<double> column = contraction.gradient_column(model.points, axis, 0.25);
+      for (size_t i = 0; i < column.size(); ++i) EXPECT_EQ(column[i], all.gradient[i][axis]);
+    }
+  }
+}
+
+TEST(Contraction, PartsHaveTheBitsOfTheWhole) {
+  const PatchModel model = wavy_sheet(3, 4, 40, 150);
+  const VolumeContraction contraction(model);
+  const ValueAndGradient all = contraction.value_and_gradient(model.points, 0.5);
+  for (const auto& [i0, j0, i1, j1] :
+       {std::array{10, 40, 15, 44}, std::array{0, 0, 1, 1}, std::array{35, 0, 40, 150}}) {
+    std::vector<int> row_of(model.points.size(), -1);
+    std::vector<int> chosen;
+    for (int i = i0; i < i1; ++i) {
+      for (int j = j0; j < j1; ++j) {
+        row_of[static_cast<size_t>(i * 150 + j)] = static_cast<int>(chosen.size());
+        chosen.push_back(i * 150 + j);
+      }
+    }
+    std::vector<Vec3> rows(chosen.size(), Vec3::Zero());
+    contraction.add_gradient(model.points, row_of, 0.5, rows);
+    for (size_t k = 0; k < rows.size(); ++k) {
+      EXPECT_EQ(rows[k], all.gradient[static_cast<size_t>(chosen[k])]) << i0 << ' ' << k;
+    }
+  }
+}
+
+TEST(Contraction, PointsOfNoPatchHaveNoGradient) {
+  PatchModel model = make_cube_model(2, 2);
+  const double volume = VolumeContraction(model).value(model.points);
+  model.points.emplace_back(7.0, 8.0, 9.0);
+  ValueAndGradient result;
+  result.gradient.assign(3, Vec3(1, 2, 3));  // what was there is overwritten
+  VolumeContraction(model).value_and_gradient(model.points, 0.0, 1, result);
+  EXPECT_EQ(result.value, volume);
+  EXPECT_EQ(result.gradient.back(), Vec3(0, 0, 0));
 }
 
 }  // namespace

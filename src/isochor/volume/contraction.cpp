@@ -1,237 +1,412 @@
 #include "isochor/volume/contraction.h"
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <numeric>
 #include <utility>
 
 #include "isochor/base/error.h"
-#include "isochor/bspline/joins.h"
+#include "isochor/base/parallel.h"
 #include "isochor/volume/compensated_sum.h"
 #include "isochor/volume/element_fields.h"
-#include "isochor/volume/span_table.h"
+#include "isochor/volume/quadrature_choice.h"
 
 namespace isochor {
+
+using internal::Columns;
+using internal::kLanes;
+using internal::Pack;
+
 namespace {
 
-// Rows of three coordinates, each with `halo` zeros on both sides, so that neighbours beyond the
-// ends of a row need no special case.
-class Rows {
- public:
-  Rows(int count, int length, int halo)
-      : halo_(halo),
-        stride_(static_cast<size_t>(length) + 2 * halo),
-        numbers_(3 * static_cast<size_t>(count) * stride_) {}
+// A strip's buffers stay in the first two caches: at degree 3 about 60 kB.
+constexpr int kStripColumns = 128;
+constexpr int kRowsOfTask = 256;
 
-  // Entry 0 of a row; entries from -halo to length - 1 + halo exist.
-  double* row(int index, int axis) {
-    return &numbers_[(3 * static_cast<size_t>(index) + axis) * stride_ + halo_];
-  }
-  const double* row(int index, int axis) const {
-    return &numbers_[(3 * static_cast<size_t>(index) + axis) * stride_ + halo_];
-  }
-  void clear() { std::fill(numbers_.begin(), numbers_.end(), 0.0); }
+IndexRange clipped(const IndexRange& range, int size) {
+  return {std::max(0, range.begin), std::min(size, range.end)};
+}
+
+// A ring of equal rows of Packs.
+class Ring {
+ public:
+  Ring(int rows, int length)
+      : rows_(rows), length_(length), packs_(static_cast<size_t>(rows) * length) {}
+  Pack* row(int k) { return &packs_[static_cast<size_t>((k + rows_) % rows_) * length_]; }
+  int length() const { return length_; }
 
  private:
-  int halo_;
-  size_t stride_;
-  std::vector<double> numbers_;
+  int rows_;
+  int length_;
+  std::vector<Pack> packs_;
 };
 
-// The three inner loops. Nothing overlaps, which the compiler needs to know to vectorise them.
-void add_product(double* __restrict out, const double* __restrict a, const double* __restrict b,
-                 int count) {
-  for (int i = 0; i < count; ++i) out[i] += a[i] * b[i];
-}
-void add_minor(double* __restrict out, const double* __restrict a, const double* __restrict d,
-               const double* __restrict b, const double* __restrict c, int count) {
-  for (int i = 0; i < count; ++i) out[i] += a[i] * d[i] - b[i] * c[i];
-}
-void add_multiple(double* __restrict out, double factor, const double* __restrict a, int count) {
-  for (int i = 0; i < count; ++i) out[i] += factor * a[i];
+void subtract(const Pack* a, const Pack* b, int count, Pack* out) {
+  for (int k = 0; k < count; ++k) {
+    for (int l = 0; l < kLanes; ++l) out[k].lane[l] = a[k].lane[l] - b[k].lane[l];
+  }
 }
 
-// b_k, k = span - d .. span - 1, at the place of a knot span that divides it as x : 1 - x; by the
-// Cox-de Boor recursion of degree d - 1 on knot differences.
-std::vector<double> difference_basis(const KnotVector& knots, int span, double x, double rest) {
-  const int d = knots.degree();
-  const double length = knots[span + 1] - knots[span];
-  std::vector<double> values(static_cast<size_t>(d), 0.0);
-  values[0] = 1.0;
-  const auto left = [&](int j) { return knots[span] - knots[span + 1 - j] + x * length; };
-  const auto right = [&](int j) { return knots[span + j] - knots[span + 1] + rest * length; };
-  for (int degree = 1; degree < d; ++degree) {
-    double saved = 0.0;
-    for (int r = 0; r < degree; ++r) {
-      double& value = values[static_cast<size_t>(r)];
-      const double part = value / (right(r + 1) + left(degree - r));
-      value = saved + right(r + 1) * part;
-      saved = left(degree - r) * part;
-    }
-    values[static_cast<size_t>(degree)] = saved;
-  }
-  for (int c = 0; c < d; ++c) {
-    const int k = span - d + c;
-    values[static_cast<size_t>(c)] *= d / (knots[k + d + 1] - knots[k + 1]);
-  }
-  return values;
-}
-
-// Contractions of one patch along v, for the rows that meet row k of the grid.
-class Strip {
+// The columns of a task as lanes of Packs, with e columns more on both sides. Columns beyond the
+// grid repeat the last one: they meet zeros of the tensors only.
+class Lanes {
  public:
-  Strip(const TauTensor& u, const TauTensor& v, const Rows& along_u)
-      : u_(u),
-        v_(v),
-        along_u_(along_u),
-        edge_(1, v.size(), v.degree()),
-        pairs_(2 * v.degree() + 1, v.size(), 0),
-        areas_(1, v.size(), 0) {}
-
-  // D[o]_i = sum over j of tau^v_ikj (p_{k,j+1} - p_kj), k = i + o - d, for one row of poles.
-  template <typename Pole>
-  void enter_row(const Pole& pole) {
-    const int m = v_.size(), d = v_.degree();
-    for (int j = 0; j + 1 < m; ++j) {
-      const Vec3 step = pole(j + 1) - pole(j);
-      for (int axis = 0; axis < 3; ++axis) edge_.row(0, axis)[j] = step[axis];
+  Lanes(const IndexRange& columns, int size, int e)
+      : columns_(columns), length_((columns.count() + kLanes - 1) / kLanes), e_(e) {
+    for (int t = -e; t < length_ + e; ++t) {
+      for (int l = 0; l < kLanes; ++l) {
+        places_.push_back(std::clamp(columns.begin + l * length_ + t, 0, size - 1));
+      }
     }
-    pairs_.clear();
-    for (int o = 0; o <= 2 * d; ++o) {
-      // Functions i and i + o - d and the difference j meet only for these s.
-      for (int s = std::max(0, o - d); s < std::min(2 * d, o + d); ++s) {
-        for (int axis = 0; axis < 3; ++axis) {
-          add_product(pairs_.row(o, axis), v_.band(o, s), edge_.row(0, axis) + s - d, m);
+  }
+  int length() const { return length_; }
+  // Packs of a row with its neighbours.
+  int row_length() const { return length_ + 2 * e_; }
+  const std::vector<int>& places() const { return places_; }
+
+  // Visits (column, t, lane) for every column of the task.
+  template <typename Visit>
+  void for_each_column(const Visit& visit) const {
+    for (int t = 0; t < length_; ++t) {
+      for (int l = 0; l < kLanes; ++l) {
+        const int column = columns_.begin + l * length_ + t;
+        if (column < columns_.end) visit(column, t, l);
+      }
+    }
+  }
+
+  // tau^v in the order in which PairsArguments wants it.
+  std::vector<Pack> tensor(const TauTensor& v) const {
+    std::vector<Pack> packs;
+    packs.reserve(static_cast<size_t>(length_) * internal::step_count(e_));
+    for (int t = 0; t < length_; ++t) {
+      for (int o = 0; o <= 2 * e_; ++o) {
+        for (int s = internal::first_step(e_, o); s < internal::end_step(e_, o); ++s) {
+          Pack pack{};
+          for (int l = 0; l < kLanes; ++l) {
+            const int column = columns_.begin + l * length_ + t;
+            if (column < columns_.end) pack.lane[l] = v.band(o, s)[column];
+          }
+          packs.push_back(pack);
         }
       }
     }
-  }
-
-  // T_i = sum over k of (p_{j+1,k} - p_jk) x D[k]_i for the difference j of rows.
-  const Rows& areas_with(int j) {
-    const int m = v_.size(), d = v_.degree();
-    areas_.clear();
-    for (int o = 0; o <= 2 * d; ++o) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const int next = (axis + 1) % 3, last = (axis + 2) % 3;
-        add_minor(areas_.row(0, axis), along_u_.row(j, next) + o - d, pairs_.row(o, last),
-                  along_u_.row(j, last) + o - d, pairs_.row(o, next), m);
-      }
-    }
-    return areas_;
-  }
-
-  // The rows of the gradient that the difference j and the row k of poles act on.
-  std::pair<int, int> reach(int k, int j) const {
-    const int d = u_.degree();
-    return {std::max({0, k - d, j - d + 1}), std::min({u_.size() - 1, k + d, j + d})};
+    return packs;
   }
 
  private:
-  const TauTensor& u_;
-  const TauTensor& v_;
-  const Rows& along_u_;
-  Rows edge_, pairs_, areas_;
+  IndexRange columns_;
+  int length_;
+  int e_;
+  std::vector<int> places_;
 };
+
+// Asks for memory ahead of its use: rows of large grids are far apart, which processors do not
+// foresee.
+void prefetch(const void* address) {
+#if defined(__GNUC__)
+  __builtin_prefetch(address);
+#endif
+}
+
+// Axis a of the gradient needs the coordinates after it, in cyclic order.
+template <Columns kColumns>
+constexpr int kCoordinates = kColumns == Columns::kAll ? 3 : 2;
+
+template <Columns kColumns>
+void gather(const Lanes& lanes, const int* row, const int* next_row, int axis,
+            const std::vector<Vec3>& all, Pack* out) {
+  const Vec3* points = all.data();
+  constexpr int C = kCoordinates<kColumns>;
+  const int first = kColumns == Columns::kAll ? 0 : (axis + 1) % 3;
+  const int second = kColumns == Columns::kAll ? 1 : (axis + 2) % 3;
+  const int* place = lanes.places().data();
+  for (int t = 0; t < lanes.row_length(); ++t, out += C) {
+    for (int l = 0; l < kLanes; ++l) {
+      const Vec3& p = points[row[*place]];
+      prefetch(&points[next_row[*place++]]);
+      out[0].lane[l] = p[first];
+      out[1].lane[l] = p[second];
+      if constexpr (C == 3) out[2].lane[l] = p[2];
+    }
+  }
+}
+
+bool has_weights(const Patch& patch) {
+  const auto& w = patch.weights;
+  return std::any_of(w.begin(), w.end(), [&](double each) { return each != w[0]; });
+}
+
+// tau^u sorted by the row k that enters, see RowsArguments.
+std::vector<double> sorted_by_row(const TauTensor& u) {
+  const int d = u.degree();
+  std::vector<double> sorted;
+  for (int k = 0; k < u.size(); ++k) {
+    for (int j = k - d; j < k + d; ++j) {
+      for (int i = k - d; i <= k + d; ++i) {
+        const bool inside = 0 <= i && i < u.size() && 0 <= j && j + 1 < u.size();
+        sorted.push_back(inside ? u(i, k, j) : 0.0);
+      }
+    }
+  }
+  return sorted;
+}
 
 }  // namespace
 
-TauTensor::TauTensor(const KnotVector& knots)
-    : degree_(knots.degree()),
-      size_(knots.size()),
-      band_(static_cast<size_t>(size_) * 2 * degree_ * (2 * degree_ + 1)) {
-  const GaussRule rule = gauss_legendre(exact_gauss_points(degree_));
-  const SpanTable table(knots, static_cast<int>(rule.nodes.size()));
-  for (int span = 0; span < table.spans(); ++span) {
-    for (int g = 0; g < table.gauss_points(); ++g) {
-      const auto at = static_cast<size_t>(g);
-      const std::vector<double> slopes = difference_basis(
-          knots, knots.spans()[static_cast<size_t>(span)], rule.nodes[at], rule.from_end[at]);
-      for (int c = 0; c < degree_; ++c) {
-        const double weight = table.weights(span)[g] * slopes[static_cast<size_t>(c)];
-        add_products(table, span, g, c, weight);
-      }
-    }
-  }
-}
-
-void TauTensor::add_products(const SpanTable& table, int span, int g, int c, double weight) {
-  for (int a = 0; a <= degree_; ++a) {
-    for (int b = 0; b <= degree_; ++b) {
-      const int o = b - a + degree_, s = c - a + degree_;
-      const size_t band = (static_cast<size_t>(o) * 2 * degree_ + s) * static_cast<size_t>(size_);
-      // The product of the two values first: then law (3) holds bit by bit.
-      band_[band + static_cast<size_t>(table.first(span) + a)] +=
-          weight * (table.values(span, a)[g] * table.values(span, b)[g]);
-    }
-  }
-}
-
-VolumeContraction::VolumeContraction(const PatchModel& model) : point_count_(model.points.size()) {
-  ISOCHOR_REQUIRE(closure(model).closed, model.patches.size());
+VolumeContraction::VolumeContraction(const PatchModel& model, InstructionSet set)
+    : set_(set), point_count_(model.points.size()) {
+  internal::TableCache tables;
+  std::vector<internal::PatchForm> forms;
   for (const Patch& patch : model.patches) {
     internal::require_poles(patch, point_count_);
-    ISOCHOR_REQUIRE(patch.weights.empty(), patch.handle);
-    patches_.push_back(
-        {TauTensor(patch.u_knots), TauTensor(patch.v_knots), patch.points, patch.sign()});
+    ISOCHOR_REQUIRE(!has_weights(patch), patch.handle);
+    add_patch(patch);
+    internal::PatchForm form;
+    form.u = tables.get(patch.u_knots, exact_gauss_points(patch.u_knots.degree()));
+    form.v = tables.get(patch.v_knots, exact_gauss_points(patch.v_knots.degree()));
+    forms.push_back(std::move(form));
+  }
+  find_targets(point_count_);
+  rim_ = internal::Rim(model, forms, 0.0);
+  rim_elements_ = rim_.elements();
+}
+
+void VolumeContraction::add_patch(const Patch& patch) {
+  PatchTensors tensors{
+      TauTensor(patch.u_knots), TauTensor(patch.v_knots), {}, patch.points, {}, patch.sign()};
+  tensors.u_rows = sorted_by_row(tensors.u);
+  for (int i = 0; i < patch.u_size(); i += kRowsOfTask) {
+    for (int j = 0; j < patch.v_size(); j += kStripColumns) {
+      tasks_.push_back({static_cast<int>(patches_.size()),
+                        clipped({i, i + kRowsOfTask}, patch.u_size()),
+                        clipped({j, j + kStripColumns}, patch.v_size())});
+    }
+  }
+  patches_.push_back(std::move(tensors));
+}
+
+// Tasks write to places that no other task writes to: points that are used once get their row, the
+// others get a slot for each use, which are added up afterwards in a fixed order.
+void VolumeContraction::find_targets(size_t point_count) {
+  std::vector<int> uses(point_count, 0);
+  for (const PatchTensors& patch : patches_) {
+    for (int id : patch.points) ++uses[static_cast<size_t>(id)];
+  }
+  unused_points_ = std::find(uses.begin(), uses.end(), 0) != uses.end();
+  for (PatchTensors& patch : patches_) {
+    patch.target = patch.points;
+    for (int& id : patch.target) {
+      if (uses[static_cast<size_t>(id)] == 1) continue;
+      shared_points_.push_back(id);
+      id = ~static_cast<int>(shared_points_.size() - 1);
+    }
   }
 }
 
-void VolumeContraction::add_patch(const PatchTensors& patch, const std::vector<Vec3>& points,
-                                  std::vector<Vec3>& rows) const {
-  const int n = patch.u.size(), m = patch.v.size(), d = patch.u.degree();
-  const auto place = [&](int i, int j) {
-    return static_cast<size_t>(patch.points[static_cast<size_t>(i) * m + j]);
-  };
-  Rows along_u(n - 1, m, patch.v.degree());
-  for (int i = 0; i + 1 < n; ++i) {
-    for (int j = 0; j < m; ++j) {
-      const Vec3 step = points[place(i + 1, j)] - points[place(i, j)];
-      for (int axis = 0; axis < 3; ++axis) along_u.row(i, axis)[j] = step[axis];
-    }
-  }
-  Rows area(n, m, 0);
-  Strip strip(patch.u, patch.v, along_u);
-  for (int k = 0; k < n; ++k) {
-    strip.enter_row([&](int j) -> const Vec3& { return points[place(k, j)]; });
-    for (int j = std::max(0, k - d); j <= std::min(n - 2, k + d - 1); ++j) {
-      const Rows& met = strip.areas_with(j);
-      const auto [low, high] = strip.reach(k, j);
-      for (int i = low; i <= high; ++i) {
-        const double factor = patch.u(i, k, j);
-        for (int axis = 0; axis < 3; ++axis) {
-          add_multiple(area.row(i, axis), factor, met.row(0, axis), m);
-        }
+// Walks down the rows k of poles of a task and a degree beyond, keeping what is under way in rings:
+// positions of the rows to come, differences of rows, and the rows of the gradient that are
+// growing. Every row of the gradient is added up in the same order, whatever the task it belongs
+// to.
+template <Columns kColumns, typename Sink>
+double VolumeContraction::contract(const Task& task, int axis, const std::vector<Vec3>& points,
+                                   const Sink& sink) const {
+  constexpr int C = kCoordinates<kColumns>;
+  constexpr int G = kColumns == Columns::kAll ? 3 : 1;
+  const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
+  const int n = patch.u.size(), m = patch.v.size(), d = patch.u.degree(), e = patch.v.degree();
+  const internal::Stages stages = internal::find_stages(set_, kColumns, d, e);
+  const Lanes lanes(task.columns, m, e);
+  const int width = C * lanes.row_length();
+  const std::vector<Pack> tau = lanes.tensor(patch.v);
+
+  Ring positions(d + 2, width), along(2 * d, width), growing(2 * d + 1, G * lanes.length());
+  std::vector<Pack> steps(static_cast<size_t>(width)),
+      unused(growing.row(0), growing.row(0) + growing.length());
+  const std::vector<Pack> nothing(static_cast<size_t>(width), Pack{});
+  std::vector<Pack> pairs(static_cast<size_t>(C) * lanes.length() * (2 * e + 1));
+  const internal::PairsArguments along_v{e, lanes.length(), tau.data(), steps.data(), pairs.data()};
+  std::vector<const Pack*> along_u(static_cast<size_t>(2) * d);
+  std::vector<Pack*> rows(static_cast<size_t>(2) * d + 1);
+
+  const IndexRange walk = clipped({task.rows.begin - d, task.rows.end + d}, n);
+  int next = std::max(0, walk.begin - d);  // the first row whose positions are not there yet
+  const auto enter_rows_until = [&](int last) {
+    for (; next <= std::min(last, n - 1); ++next) {
+      Pack* here = positions.row(next);
+      const int* row = &patch.points[static_cast<size_t>(next) * m];
+      gather<kColumns>(lanes, row, next + 1 < n ? row + m : row, axis, points, here);
+      if (next > std::max(0, walk.begin - d)) {
+        subtract(here, positions.row(next - 1), width, along.row(next - 1));
       }
     }
-  }
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < m; ++j) {
-      const Vec3 a(area.row(i, 0)[j], area.row(i, 1)[j], area.row(i, 2)[j]);
-      rows[place(i, j)] += patch.sign * a;
+  };
+  internal::CompensatedSum sum;
+  const auto emit = [&](int i) {
+    Pack* row = growing.row(i);
+    const size_t start = static_cast<size_t>(i) * m;
+    double parts[kLanes] = {};
+    lanes.for_each_column([&](int column, int t, int l) {
+      std::array<double, static_cast<size_t>(G)> entry;
+      for (int c = 0; c < G; ++c) entry[static_cast<size_t>(c)] = row[t * G + c].lane[l];
+      parts[l] += sink(start + static_cast<size_t>(column), entry);
+    });
+    sum.add((parts[0] + parts[1]) + (parts[2] + parts[3]));
+    std::fill(row, row + growing.length(), Pack{});
+  };
+  for (int k = walk.begin; k < walk.end; ++k) {
+    enter_rows_until(k + d);
+    subtract(positions.row(k) + C, positions.row(k), width - C, steps.data());
+    stages.pairs(along_v);
+    for (int a = 0; a < 2 * d; ++a) {
+      const int j = k - d + a;
+      along_u[static_cast<size_t>(a)] = 0 <= j && j + 1 < n ? along.row(j) : nothing.data();
     }
+    for (int b = 0; b <= 2 * d; ++b) {
+      const int i = k - d + b;
+      const bool wanted = task.rows.begin <= i && i < task.rows.end;
+      rows[static_cast<size_t>(b)] = wanted ? growing.row(i) : unused.data();
+    }
+    const double* factors = &patch.u_rows[static_cast<size_t>(k) * 2 * d * (2 * d + 1)];
+    stages.rows({d, 2 * e + 1, lanes.length(), pairs.data(), along_u.data(), factors, rows.data()});
+    if (k - d >= task.rows.begin) emit(k - d);
   }
+  for (int i = std::max(task.rows.begin, walk.end - d); i < task.rows.end; ++i) emit(i);
+  return sum.total();
 }
 
-ValueAndGradient VolumeContraction::value_and_gradient(const std::vector<Vec3>& points) const {
+double VolumeContraction::origin(const std::vector<Vec3>& points, double height) const {
+  // Third components sum to zero on a closed model: heights may be measured from any of its points.
+  const bool free = closed() && !patches_.empty() && !patches_.front().points.empty();
+  return free ? points[static_cast<size_t>(patches_.front().points.front())].z() : height;
+}
+
+void VolumeContraction::add_rim(const std::vector<Vec3>& points, double height,
+                                std::vector<Vec3>& rows) const {
+  if (rim_elements_.empty()) return;
+  std::vector<int> all(points.size());
+  std::iota(all.begin(), all.end(), 0);
+  rim_.add_flux_gradient(points, rim_elements_, all, height, rows);
+}
+
+void VolumeContraction::value_and_gradient(const std::vector<Vec3>& points, double height,
+                                           int threads, ValueAndGradient& result) const {
   ISOCHOR_REQUIRE(points.size() == point_count_, points.size(), point_count_);
+  std::vector<Vec3>& rows = result.gradient;
+  rows.resize(points.size());
+  if (unused_points_) std::fill(rows.begin(), rows.end(), Vec3::Zero());
+  for (int id : shared_points_) rows[static_cast<size_t>(id)].setZero();
+  std::vector<Vec3> shared(shared_points_.size());
+  std::vector<double> parts(tasks_.size());
+  const double zero = origin(points, height);
+  run_tasks(static_cast<int>(tasks_.size()), threads, [&](int k) {
+    const Task& task = tasks_[static_cast<size_t>(k)];
+    const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
+    // Plain pointers and numbers, which the loop over the poles keeps in registers.
+    const auto sink = [ids = patch.points.data(), targets = patch.target.data(), at = points.data(),
+                       out = rows.data(), uses = shared.data(), sign = patch.sign,
+                       zero](size_t place, const std::array<double, 3>& area) {
+      const int target = targets[place];
+      Vec3& row = target >= 0 ? out[target] : uses[~target];
+      row = Vec3(sign * area[0], sign * area[1], sign * area[2]);
+      return (at[ids[place]].z() - zero) * (sign * area[2]);
+    };
+    parts[static_cast<size_t>(k)] = contract<Columns::kAll>(task, 0, points, sink);
+  });
+  for (size_t k = 0; k < shared.size(); ++k) {
+    rows[static_cast<size_t>(shared_points_[k])] += shared[k];
+  }
+  add_rim(points, height, rows);
+  internal::CompensatedSum sum;
+  for (double part : parts) sum.add(part);
+  result.value = sum.total();
+}
+
+ValueAndGradient VolumeContraction::value_and_gradient(const std::vector<Vec3>& points,
+                                                       double height, int threads) const {
   ValueAndGradient result;
-  result.gradient.assign(points.size(), Vec3::Zero());
-  double low = std::numeric_limits<double>::infinity(), high = -low;
-  for (const PatchTensors& patch : patches_) {
-    add_patch(patch, points, result.gradient);
-    for (int id : patch.points) {
-      low = std::min(low, points[static_cast<size_t>(id)].z());
-      high = std::max(high, points[static_cast<size_t>(id)].z());
+  value_and_gradient(points, height, threads, result);
+  return result;
+}
+
+double VolumeContraction::value(const std::vector<Vec3>& points, double height, int threads) const {
+  ISOCHOR_REQUIRE(points.size() == point_count_, points.size(), point_count_);
+  std::vector<double> parts(tasks_.size());
+  const double zero = origin(points, height);
+  run_tasks(static_cast<int>(tasks_.size()), threads, [&](int k) {
+    const Task& task = tasks_[static_cast<size_t>(k)];
+    const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
+    const auto sink = [ids = patch.points.data(), at = points.data(), sign = patch.sign, zero](
+                          size_t place, const std::array<double, 1>& area) {
+      return (at[ids[place]].z() - zero) * (sign * area[0]);
+    };
+    parts[static_cast<size_t>(k)] = contract<Columns::kOne>(task, 2, points, sink);
+  });
+  internal::CompensatedSum sum;
+  for (double part : parts) sum.add(part);
+  return sum.total();
+}
+
+std::vector<double> VolumeContraction::gradient_column(const std::vector<Vec3>& points, int axis,
+                                                       double height, int threads) const {
+  ISOCHOR_REQUIRE(points.size() == point_count_, points.size(), point_count_);
+  ISOCHOR_REQUIRE(0 <= axis && axis < 3, axis);
+  std::vector<double> column(points.size(), 0.0);
+  std::vector<double> shared(shared_points_.size());
+  run_tasks(static_cast<int>(tasks_.size()), threads, [&](int k) {
+    const Task& task = tasks_[static_cast<size_t>(k)];
+    const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
+    const auto sink = [targets = patch.target.data(), out = column.data(), uses = shared.data(),
+                       sign = patch.sign](size_t place, const std::array<double, 1>& area) {
+      const int target = targets[place];
+      (target >= 0 ? out[target] : uses[~target]) = sign * area[0];
+      return 0.0;
+    };
+    contract<Columns::kOne>(task, axis, points, sink);
+  });
+  for (size_t k = 0; k < shared.size(); ++k) {
+    column[static_cast<size_t>(shared_points_[k])] += shared[k];
+  }
+  if (!closed()) {
+    // On top of the column, in the order in which it is added when there are three.
+    std::vector<Vec3> rows(points.size(), Vec3::Zero());
+    for (size_t i = 0; i < column.size(); ++i) rows[i][axis] = column[i];
+    add_rim(points, height, rows);
+    for (size_t i = 0; i < column.size(); ++i) column[i] = rows[i][axis];
+  }
+  return column;
+}
+
+void VolumeContraction::add_gradient(const std::vector<Vec3>& points,
+                                     const std::vector<int>& row_of, double height,
+                                     std::vector<Vec3>& rows) const {
+  ISOCHOR_REQUIRE(points.size() == point_count_, points.size(), point_count_);
+  ISOCHOR_REQUIRE(row_of.size() == point_count_, row_of.size(), point_count_);
+  for (size_t q = 0; q < patches_.size(); ++q) {
+    const PatchTensors& patch = patches_[q];
+    const int m = patch.v.size();
+    Task task{static_cast<int>(q), {patch.u.size(), 0}, {m, 0}};
+    for (size_t k = 0; k < patch.points.size(); ++k) {
+      if (row_of[static_cast<size_t>(patch.points[k])] < 0) continue;
+      const int i = static_cast<int>(k) / m, j = static_cast<int>(k) % m;
+      task.rows = {std::min(task.rows.begin, i), std::max(task.rows.end, i + 1)};
+      task.columns = {std::min(task.columns.begin, j), std::max(task.columns.end, j + 1)};
+    }
+    const IndexRange columns = task.columns;
+    for (int j = columns.begin; j < columns.end; j += kStripColumns) {
+      task.columns = {j, std::min(columns.end, j + kStripColumns)};
+      const auto sink = [&](size_t place, const std::array<double, 3>& area) {
+        const int row = row_of[static_cast<size_t>(patch.points[place])];
+        if (row >= 0) {
+          rows[static_cast<size_t>(row)] += patch.sign * Vec3(area[0], area[1], area[2]);
+        }
+        return 0.0;
+      };
+      contract<Columns::kAll>(task, 0, points, sink);
     }
   }
-  // The third components sum to zero on a closed model: heights may be measured from anywhere.
-  const double middle = 0.5 * (low + high);
-  internal::CompensatedSum sum;
-  for (size_t i = 0; i < points.size(); ++i) {
-    sum.add((points[i].z() - middle) * result.gradient[i].z());
-  }
-  result.value = sum.total();
-  return result;
+  if (closed()) return;
+  rim_.add_flux_gradient(points, rim_.elements_of(row_of), row_of, height, rows);
 }
 
 }  // namespace isochor

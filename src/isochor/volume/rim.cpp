@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
 #include "isochor/exact/rational.h"
 #include "isochor/volume/span_polynomials.h"
@@ -295,6 +296,35 @@ void Rim::add_area_gradient(const std::vector<Vec3>& points,
         if (row < 0) continue;
         rows[static_cast<size_t>(row)].x() += scale * curve.sign * share.factor * by_x;
         rows[static_cast<size_t>(row)].y() += scale * curve.sign * share.factor * by_y;
+      }
+    }
+  }
+}
+
+void Rim::add_flux_gradient(const std::vector<Vec3>& points,
+                            const std::vector<RimElement>& elements, const std::vector<int>& row_of,
+                            double height, std::vector<Vec3>& rows) const {
+  Values x, y, z;
+  for (const RimElement& at : elements) {
+    const Curve& curve = curves_[static_cast<size_t>(at.curve)];
+    const SpanTable& table = *curve.table;
+    ISOCHOR_REQUIRE(curve.weights.empty(), at.curve);
+    const Vec3& reference = points[static_cast<size_t>(curve.coefficients[0][0].point)];
+    evaluate(at, points, 0, reference.x(), false, x);
+    evaluate(at, points, 1, reference.y(), false, y);
+    evaluate(at, points, 2, height, false, z);
+    for (int j = 0; j <= table.degree(); ++j) {
+      double by_x = 0.0, by_y = 0.0;
+      for (size_t g = 0; g < z.value.size(); ++g) {
+        const double flux = table.weights(at.span)[g] * table.values(at.span, j)[g] * z.value[g];
+        by_x += flux * y.slope[g];
+        by_y -= flux * x.slope[g];
+      }
+      for (const Share& share : curve.coefficients[static_cast<size_t>(table.first(at.span) + j)]) {
+        const int row = row_of[static_cast<size_t>(share.point)];
+        if (row < 0) continue;
+        rows[static_cast<size_t>(row)].x() += curve.sign * share.factor * by_x;
+        rows[static_cast<size_t>(row)].y() += curve.sign * share.factor * by_y;
       }
     }
   }

@@ -50,6 +50,12 @@ class Rim {
   void add_area_gradient(const std::vector<Vec3>& points, const std::vector<RimElement>& elements,
                          const std::vector<int>& row_of, double scale,
                          std::vector<Vec3>& rows) const;
+  // rows[row_of[i]] += the integrals of phi_i (z - height) dy and -phi_i (z - height) dx around the
+  // rim in x and y, for rows that exist: what the gradient of the integral of (z - height) dx dy
+  // has beside the vector areas of the patches.
+  void add_flux_gradient(const std::vector<Vec3>& points, const std::vector<RimElement>& elements,
+                         const std::vector<int>& row_of, double height,
+                         std::vector<Vec3>& rows) const;
   // |computed - quadrature| <= rounding_factor() * majorant.
   double rounding_factor() const { return rounding_factor_; }
 

@@ -37,6 +37,7 @@
 
 #include "isochor/base/vec3.h"
 #include "isochor/bspline/patch_model.h"
+#include "isochor/volume/contraction.h"
 
 namespace isochor {
 
@@ -61,11 +62,6 @@ struct Support {
 struct Bounded {
   double value = 0.0;
   double bound = 0.0;
-};
-
-struct ValueAndGradient {
-  double value = 0.0;
-  std::vector<Vec3> gradient;
 };
 
 // V(p + s d) - V(p) = linear s + quadratic s^2 + cubic s^3.
