@@ -4,6 +4,7 @@
 #include "isochor/volume/exact_volume.h"
 #include "isochor/volume/volume_form.h"
 #include "model_source.h"
+#include "moment_output.h"
 #include "terminal.h"
 
 namespace isochor::app {
@@ -29,9 +30,11 @@ std::string exact_text(const LoadedModel& loaded) {
 
 int run_volume(const VolumeOptions& options, const Common& common) {
   const LoadedModel loaded = load_model(options.model, common);
-  if (!loaded.surroundings.closed && !options.open) {
+  const bool needs_closed = !options.open || options.moments;
+  if (!loaded.surroundings.closed && needs_closed) {
     refuse(options.model + ": the model is open (" + loaded.surroundings.why_open +
-           ") and encloses no volume; --open prints the integral of z dx dy");
+           ") and encloses no volume; " +
+           (options.moments ? "it has no moments" : "--open prints the integral of z dx dy"));
     print_json(common, Value::object()
                            .set("outcome", "refused")
                            .set("reason", "open: " + loaded.surroundings.why_open));
@@ -45,6 +48,11 @@ int run_volume(const VolumeOptions& options, const Common& common) {
     throw error.in_file(options.model);
   }
   result.set("exact", options.exact ? Value(exact) : Value());
+  std::optional<Moments> moments;
+  if (options.moments) {
+    moments = moments_of(loaded);
+    result.set("moments", to_value(*moments));
+  }
   if (!options.gradient.empty()) {
     Value rows = Value::list();
     for (const Vec3& row : VolumeForm(loaded.patches).gradient(loaded.patches.points)) {
@@ -54,6 +62,7 @@ int run_volume(const VolumeOptions& options, const Common& common) {
   }
   print(common, format("%.17g (error at most %.2g)", loaded.volume, loaded.volume_bound));
   if (options.exact) print(common, "exact: " + exact);
+  if (moments) print_moments(common, *moments, loaded.patches.unit);
   if (!options.gradient.empty()) print(common, "gradient: " + options.gradient);
   print_json(common, result);
   return kExitDone;

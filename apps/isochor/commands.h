@@ -29,6 +29,7 @@ struct VolumeOptions {
   std::string model;
   bool exact = false;
   bool open = false;
+  bool moments = false;
   std::string gradient;  // file to write
 };
 int run_volume(const VolumeOptions& options, const Common& common);

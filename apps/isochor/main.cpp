@@ -59,6 +59,8 @@ int run(int argc, char** argv) {
   sub->add_option("MODEL", volume.model)->required();
   sub->add_flag("--exact", volume.exact, "the rational number, for polynomial models");
   sub->add_flag("--open", volume.open, "the integral of z dx dy of an open model");
+  sub->add_flag("--moments", volume.moments,
+                "centroid, second moments, inertia and principal axes of a closed model");
   sub->add_option("--gradient", volume.gradient, "write dV/dx, dV/dy, dV/dz of every point");
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_volume(volume, common); }; });

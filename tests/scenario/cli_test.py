@@ -114,6 +114,38 @@ class Volume(Scenario):
         self.expect(1, "volume", model, "--gradient", "gradient.json", says="open")
         self.assertAlmostEqual(self.run_json("volume", model, "--open")["volume"], 1, delta=1e-12)
 
+    def test_moments_of_the_unit_cube(self):
+        result = self.run_json("volume", CUBE, "--moments")
+        self.assertEqual(set(result), {"volume", "bound", "exact", "moments"})
+        moments = result["moments"]
+        self.assertLessEqual(abs(moments["volume"] - 1), moments["volume_bound"])
+        for i in range(3):
+            self.assertLessEqual(abs(moments["centroid"][i] - 0.5), moments["centroid_bound"][i])
+            self.assertLess(moments["centroid_bound"][i], 1e-11)
+            for j in range(3):
+                for key, expected in (("second_moments", 1 / 12), ("inertia", 1 / 6)):
+                    error = abs(moments[key][i][j] - (expected if i == j else 0))
+                    self.assertLessEqual(error, moments[key + "_bound"][i][j], (key, i, j))
+            self.assertLessEqual(abs(moments["principal_moments"][i] - 1 / 6),
+                                 moments["principal_moments_bound"])
+            self.assertEqual(moments["principal_axes_bound"][i], math.pi / 2, "any axis will do")
+        text = isochor("volume", CUBE, "--moments").stdout
+        for words in ("centroid, m (", "inertia about the centroid", "not determined"):
+            self.assertIn(words, text)
+
+    def test_moments_of_an_open_model_are_refused(self):
+        model = self.open_cube()
+        self.expect(1, "volume", model, "--moments", says="it has no moments")
+        self.expect(1, "volume", model, "--moments", "--open", says="open")
+        refusal = self.run_json("volume", model, "--moments", "--open", code=1)
+        self.assertEqual(refusal["outcome"], "refused")
+
+    def test_a_model_without_volume_has_no_centroid(self):
+        model = json.loads(CUBE.read_text())
+        model["points"] = [[x, y, 0] for x, y, _ in model["points"]]
+        (WORK / "flat.isochor.json").write_text(json.dumps(model))
+        self.expect(3, "volume", "flat.isochor.json", "--moments", says="not different from zero")
+
     def test_models_that_are_not_polynomial_patches_have_no_rational_volume(self):
         self.expect(3, "volume", HULL, "--exact", says="omit --exact")
 

@@ -73,6 +73,7 @@ void set_principal(Moments& result) {
   const Vec3 first = pointing_forward(solver.eigenvectors().col(0));
   const Vec3 second = pointing_forward(solver.eigenvectors().col(1));
   result.axes << first, second, first.cross(second);
+  result.axes.array() += 0.0;  // no negative zeros in print
   result.principal_bound =
       result.inertia_bound.norm() + kEigenRoundings * kUnitRoundoff * result.inertia.norm();
   // Davis and Kahan: sin(angle) <= error / (gap - error).

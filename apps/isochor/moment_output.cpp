@@ -1,0 +1,72 @@
+#include "moment_output.h"
+
+#include <cmath>
+
+#include "isochor/base/error.h"
+#include "terminal.h"
+
+namespace isochor::app {
+namespace {
+
+Value rows_of(const Matrix3& matrix) {
+  Value rows = Value::list();
+  for (int i = 0; i < 3; ++i) rows.push(Vec3(matrix.row(i)));
+  return rows;
+}
+
+std::string triple(const Vec3& v) { return format("%.17g %.17g %.17g", v.x(), v.y(), v.z()); }
+
+void print_tensor(const Common& common, const char* name, const Matrix3& tensor,
+                  const Matrix3& bound, const std::string& unit) {
+  print(common, format("%s, %s^5 (error at most %.2g):", name, unit.c_str(), bound.maxCoeff()));
+  for (int i = 0; i < 3; ++i) print(common, "  " + triple(tensor.row(i)));
+}
+
+}  // namespace
+
+Moments moments_of(const LoadedModel& loaded) {
+#ifdef ISOCHOR_WITH_OCCT
+  if (loaded.solid) {
+    throw InputError(loaded.path, "", "the moments of CAD files are not available in this version");
+  }
+#endif
+  try {
+    return MomentForm(loaded.patches).moments(loaded.patches.points);
+  } catch (const InputError& error) {
+    throw error.in_file(loaded.path);
+  }
+}
+
+Value to_value(const Moments& m) {
+  return Value::object()
+      .set("volume", m.volume.value)
+      .set("volume_bound", m.volume.bound)
+      .set("centroid", m.centroid)
+      .set("centroid_bound", m.centroid_bound)
+      .set("second_moments", rows_of(m.second))
+      .set("second_moments_bound", rows_of(m.second_bound))
+      .set("inertia", rows_of(m.inertia))
+      .set("inertia_bound", rows_of(m.inertia_bound))
+      .set("principal_moments", m.principal)
+      .set("principal_moments_bound", m.principal_bound)
+      .set("principal_axes", rows_of(m.axes.transpose()))
+      .set("principal_axes_bound", m.axis_bound);
+}
+
+void print_moments(const Common& common, const Moments& m, const std::string& unit) {
+  print(common,
+        format("centroid, %s (error at most %.2g): ", unit.c_str(), m.centroid_bound.maxCoeff()) +
+            triple(m.centroid));
+  print_tensor(common, "second moments about the centroid", m.second, m.second_bound, unit);
+  print_tensor(common, "inertia about the centroid, density 1", m.inertia, m.inertia_bound, unit);
+  print(common, format("principal moments, %s^5 (error at most %.2g), and axes:", unit.c_str(),
+                       m.principal_bound));
+  for (int k = 0; k < 3; ++k) {
+    const bool known = m.axis_bound[k] < 0.5;
+    print(common, format("  %.17g  along %s (%s)", m.principal[k], triple(m.axes.col(k)).c_str(),
+                         known ? format("within %.2g rad", m.axis_bound[k]).c_str()
+                               : "not determined: its neighbour is as large"));
+  }
+}
+
+}  // namespace isochor::app
