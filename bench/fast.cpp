@@ -1,19 +1,25 @@
 #include "fast.h"
 
-#include "isochor/base/error.h"
-
 namespace isochor::bench {
+namespace {
 
-bool can_choose(Instructions instructions) { return instructions == Instructions::kBest; }
-bool can_choose_threads() { return false; }
+InstructionSet set_for(Instructions instructions) {
+  return instructions == Instructions::kBest ? best_instruction_set() : InstructionSet::kPortable;
+}
 
-Fast::Fast(const PatchModel& model, Instructions instructions, int threads) : contraction_(model) {
-  ISOCHOR_REQUIRE(can_choose(instructions), static_cast<int>(instructions));
-  ISOCHOR_REQUIRE(threads == 1 || can_choose_threads(), threads);
+}  // namespace
+
+Fast::Fast(const PatchModel& model, Instructions instructions, int threads)
+    : contraction_(model, set_for(instructions)), threads_(threads) {}
+
+void Fast::run(const std::vector<Vec3>& points, ValueAndGradient& result) const {
+  contraction_.value_and_gradient(points, 0.0, threads_, result);
 }
 
 ValueAndGradient Fast::run(const std::vector<Vec3>& points) const {
-  return contraction_.value_and_gradient(points);
+  ValueAndGradient result;
+  run(points, result);
+  return result;
 }
 
 }  // namespace isochor::bench

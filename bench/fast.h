@@ -11,19 +11,17 @@ namespace isochor::bench {
 // Which instructions the contraction may use.
 enum class Instructions { kBest, kPlain };
 
-// False when the library offers no such choice, so that the same code would be measured twice.
-bool can_choose(Instructions instructions);
-// False when the library computes on one thread whatever it is asked for.
-bool can_choose_threads();
-
 class Fast {
  public:
   explicit Fast(const PatchModel& model, Instructions instructions = Instructions::kBest,
                 int threads = 1);
+  // Overwrites the result, whose memory is used again.
+  void run(const std::vector<Vec3>& points, ValueAndGradient& result) const;
   ValueAndGradient run(const std::vector<Vec3>& points) const;
 
  private:
   VolumeContraction contraction_;
+  int threads_;
 };
 
 }  // namespace isochor::bench
