@@ -38,6 +38,7 @@
 
 #include "isochor/base/vec3.h"
 #include "isochor/bspline/patch_model.h"
+#include "isochor/volume/bounded.h"
 #include "isochor/volume/contraction.h"
 
 namespace isochor {
@@ -57,12 +58,6 @@ struct Support {
   std::vector<int> points;        // ascending, without repeats
   std::vector<int> row_of;        // per point of the table: its place in `points`, or -1
   std::vector<Element> elements;  // those on which a function of these points lives; in order
-};
-
-// A number and how far it may be from what it stands for.
-struct Bounded {
-  double value = 0.0;
-  double bound = 0.0;
 };
 
 // V(p + s d) - V(p) = linear s + quadratic s^2 + cubic s^3.
