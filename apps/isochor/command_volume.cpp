@@ -29,7 +29,7 @@ std::string exact_text(const LoadedModel& loaded) {
 }  // namespace
 
 int run_volume(const VolumeOptions& options, const Common& common) {
-  const LoadedModel loaded = load_model(options.model, common);
+  const LoadedModel loaded = load_model(options.model, common, {}, options.moments);
   const bool needs_closed = !options.open || options.moments;
   if (!loaded.surroundings.closed && needs_closed) {
     refuse(options.model + ": the model is open (" + loaded.surroundings.why_open +

@@ -110,9 +110,11 @@ namespace {
 
 // The solid with the faces named in `convert` turned into patches; `converted` gets their numbers.
 SolidModel read_converted(const std::string& path, const Common& common,
-                          const std::vector<std::string>& convert, std::vector<int>& converted) {
+                          const std::vector<std::string>& convert, bool moments,
+                          std::vector<int>& converted) {
   const BusyLine busy(common, "reading " + path);
   ReadOptions options = read_options(common);
+  options.moments = moments;
   SolidModel solid = read_solid(path, options);
   for (const std::string& name : convert) {
     const int face = find_face(solid, name);
@@ -136,7 +138,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
 #endif
 
 LoadedModel load_model(const std::string& path, const Common& common,
-                       const std::vector<std::string>& convert) {
+                       const std::vector<std::string>& convert, bool moments) {
   if (extension_of(path) == "isochor.json") return load_json(path);
   if (!is_cad_file(path)) {
     read_file(path);  // a missing file is the better message
@@ -145,12 +147,13 @@ LoadedModel load_model(const std::string& path, const Common& common,
   }
 #ifdef ISOCHOR_WITH_OCCT
   std::vector<int> converted;
-  SolidModel solid = read_converted(path, common, convert, converted);
+  SolidModel solid = read_converted(path, common, convert, moments, converted);
   for (const std::string& notice : solid.notices) detail(common, path + ": " + notice);
   return from_solid(std::move(solid), std::move(converted));
 #else
   (void)common;
   (void)convert;
+  (void)moments;
   throw InputError(path, "", "this build has no STEP, IGES and BREP support");
 #endif
 }

@@ -30,10 +30,11 @@ struct LoadedModel {
 // True for STEP, IGES and BREP by extension.
 bool is_cad_file(const std::string& path);
 
-// Reads a model. `convert`: names of faces to turn into B-spline patches when they are not.
+// Reads a model. `convert`: names of faces to turn into B-spline patches when they are not;
+// `moments`: with the moment integrals of CAD files.
 // Throws InputError for anything that cannot be used, also for an unknown extension.
 LoadedModel load_model(const std::string& path, const Common& common,
-                       const std::vector<std::string>& convert = {});
+                       const std::vector<std::string>& convert = {}, bool moments = false);
 
 #ifdef ISOCHOR_WITH_OCCT
 ReadOptions read_options(const Common& common);

@@ -25,12 +25,10 @@ void print_tensor(const Common& common, const char* name, const Matrix3& tensor,
 }  // namespace
 
 Moments moments_of(const LoadedModel& loaded) {
-#ifdef ISOCHOR_WITH_OCCT
-  if (loaded.solid) {
-    throw InputError(loaded.path, "", "the moments of CAD files are not available in this version");
-  }
-#endif
   try {
+#ifdef ISOCHOR_WITH_OCCT
+    if (loaded.solid && loaded.solid->moments) return moments_from(*loaded.solid->moments);
+#endif
     return MomentForm(loaded.patches).moments(loaded.patches.points);
   } catch (const InputError& error) {
     throw error.in_file(loaded.path);

@@ -133,6 +133,20 @@ class Volume(Scenario):
         for words in ("centroid, m (", "inertia about the centroid", "not determined"):
             self.assertIn(words, text)
 
+    def test_moments_of_a_solid_with_planes_and_trims(self):
+        result = self.run_json("volume", HULL, "--moments")
+        moments = result["moments"]
+        self.assertAlmostEqual(moments["volume"], result["volume"], delta=result["bound"])
+        # Port and starboard are alike, and the keel line is no axis of symmetry.
+        self.assertLessEqual(abs(moments["centroid"][1]), moments["centroid_bound"][1])
+        self.assertLessEqual(abs(moments["second_moments"][0][1]),
+                             moments["second_moments_bound"][0][1])
+        self.assertGreater(moments["second_moments"][0][2], 1000)
+        trace = sum(moments["inertia"][i][i] for i in range(3))
+        self.assertAlmostEqual(sum(moments["principal_moments"]), trace, delta=1e-9 * trace)
+        for axis in moments["principal_axes"]:
+            self.assertAlmostEqual(math.hypot(*axis), 1, delta=1e-14)
+
     def test_moments_of_an_open_model_are_refused(self):
         model = self.open_cube()
         self.expect(1, "volume", model, "--moments", says="it has no moments")

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "isochor/base/error.h"
@@ -329,6 +330,10 @@ TEST(Moments, BodiesWithoutVolumeAreRefused) {
   MomentIntegrals unknown;
   unknown.value[0] = std::nan("");
   EXPECT_THROW(moments_from(unknown), InputError);
+  unknown.value[0] = 1.0;
+  unknown.bound[0] = std::numeric_limits<double>::infinity();
+  EXPECT_NE(testing::message_of<InputError>([&] { moments_from(unknown); }).find("does not close"),
+            std::string::npos);
 }
 
 }  // namespace

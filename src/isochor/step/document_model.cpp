@@ -16,6 +16,7 @@
 #include "isochor/step/edge_measures.h"
 #include "isochor/step/flux.h"
 #include "isochor/step/shape_facts.h"
+#include "isochor/step/solid_moments.h"
 
 namespace isochor::internal {
 namespace {
@@ -136,6 +137,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
     patch.aliases = facts.aliases;
   }
   integrate(table, document, model);
+  if (options.moments && model.facts.closed) model.moments = shape_moments(document.shape);
   return model;
 }
 

@@ -17,7 +17,6 @@ namespace {
 // Rules of this many points resolve a sixth of a turn, or a rational span, to rounding.
 constexpr int kSmoothPoints = 16;
 constexpr int kFinePoints = 25;
-constexpr int kAreaPoints = 6;  // areas are not polynomial: a few points more than flux needs
 constexpr int kMaxPoints = 48;
 constexpr double kWidestTurn = 1.1;  // radians per piece of an angular parameter
 constexpr double kRuleTest = 1e-15;  // a rule is good when twice as many points change less
@@ -63,18 +62,9 @@ UnitRule unit_rule(int count) {
   return rule;
 }
 
-void FluxSums::add(const FluxSums& other, double factor) {
-  const double weight = std::abs(factor);
-  flux += other.flux * factor;
-  projected += other.projected * factor;
-  area += other.area * factor;
-  size += other.size * weight;
-  noise += other.noise * weight;
-  projected_noise += other.projected_noise * weight;
-}
-
 // Columns over i: the surface and its v derivative, contracted with B_j(v) and B_j'(v).
-struct FluxIntegrand::Line {
+template <typename Kind>
+struct FluxIntegrand<Kind>::Line {
   int low = 0;
   std::vector<Homogeneous> value, slope;
 
@@ -96,8 +86,9 @@ struct FluxIntegrand::Line {
   }
 };
 
-FluxIntegrand::FluxIntegrand(const Handle(Geom_Surface) & surface, double z0)
-    : surface_(surface), z0_(z0), breaks_(surface_breaks(surface)) {
+template <typename Kind>
+FluxIntegrand<Kind>::FluxIntegrand(const Handle(Geom_Surface) & surface, const Kind& kind)
+    : surface_(surface), kind_(kind), breaks_(surface_breaks(surface)) {
   const GeomAdaptor_Surface adaptor(surface);
   switch (adaptor.GetType()) {
     case GeomAbs_Plane:
@@ -116,6 +107,7 @@ FluxIntegrand::FluxIntegrand(const Handle(Geom_Surface) & surface, double z0)
     default:
       break;
   }
+  polynomial_ = polynomial_ && exact_points() <= kMaxPoints;
   angular_u_ = u_degree_ <= 1 && adaptor.IsUPeriodic();
   least_u_step_ = least_step(breaks_.u);
   least_v_step_ = least_step(breaks_.v);
@@ -127,7 +119,8 @@ FluxIntegrand::FluxIntegrand(const Handle(Geom_Surface) & surface, double z0)
   }
 }
 
-FluxIntegrand::Table FluxIntegrand::table_of(int points) const {
+template <typename Kind>
+typename FluxIntegrand<Kind>::Table FluxIntegrand<Kind>::table_of(int points) const {
   Table table{unit_rule(points), {}, {}};
   if (!spline_) return table;
   const KnotVector& knots = spline_->u_knots();
@@ -144,7 +137,8 @@ FluxIntegrand::Table FluxIntegrand::table_of(int points) const {
   return table;
 }
 
-void FluxIntegrand::prepare(double low, double high, double v_low, double v_high) {
+template <typename Kind>
+void FluxIntegrand<Kind>::prepare(double low, double high, double v_low, double v_high) {
   double start = 0.5 * (low + high);
   // From a knot there are only whole spans, which are tabulated, and one partial one.
   double best = std::numeric_limits<double>::infinity();
@@ -158,30 +152,32 @@ void FluxIntegrand::prepare(double low, double high, double v_low, double v_high
   prepare_at(start, high, v_low, v_high);
 }
 
-void FluxIntegrand::prepare_at(double start, double u_end, double v_low, double v_high) {
+template <typename Kind>
+void FluxIntegrand<Kind>::prepare_at(double start, double u_end, double v_low, double v_high) {
   start_ = start;
   choose_rules(u_end, v_low, v_high);
 }
 
-void FluxIntegrand::choose_rules(double u_end, double v_low, double v_high) {
-  const int exact = std::min((3 * u_degree_ + 1) / 2, kMaxPoints);
+template <typename Kind>
+void FluxIntegrand<Kind>::choose_rules(double u_end, double v_low, double v_high) {
+  const int exact = std::min(exact_points(), kMaxPoints);
   if (polynomial_) {
-    rule_ = table_of(std::max(exact, plane_ ? 2 : kAreaPoints));
+    rule_ = table_of(std::max(exact, plane_ ? 2 : Kind::kLeastPoints));
     fine_rule_ = rule_;
     return;
   }
   fine_rule_ = table_of(std::max(exact, kFinePoints));
   // Weights that hardly vary need little more than a polynomial of the same degree.
-  for (int points = std::max(exact, kAreaPoints) + 2;; points += 3) {
+  for (int points = std::max(exact, Kind::kLeastPoints) + 2;; points += 3) {
     rule_ = table_of(points);
     if (points >= std::max(exact, kSmoothPoints)) return;
     double change = 0.0;
     double size = 0.0;
     for (double s : {0.07, 0.31, 0.52, 0.77, 0.96}) {
       const double v = v_low + s * (v_high - v_low);
-      const FluxSums coarse = inner(u_end, v, false);
-      const FluxSums fine = inner(u_end, v, true);
-      change = std::max(change, std::abs(static_cast<double>(fine.flux - coarse.flux)));
+      const Sums coarse = inner(u_end, v, false);
+      const Sums fine = inner(u_end, v, true);
+      change = std::max(change, fine.distance(coarse));
       size = std::max(size, static_cast<double>(fine.size));
     }
     if (change <= kRuleTest * size) break;
@@ -190,27 +186,19 @@ void FluxIntegrand::choose_rules(double u_end, double v_low, double v_high) {
   fine_rule_ = table_of(static_cast<int>(rule_.rule.nodes.size()) + 3);
 }
 
-void FluxIntegrand::add_point(const gp_Pnt& p, const gp_Vec& du, const gp_Vec& dv, double w,
-                              FluxSums& sums) const {
-  const double height = p.Z() - z0_;
-  const double jacobian = du.X() * dv.Y() - dv.X() * du.Y();
-  const double speed_u = du.Magnitude();
-  const double speed_v = dv.Magnitude();
-  sums.flux += w * height * jacobian;
-  sums.projected += w * jacobian;
-  sums.area += w * du.Crossed(dv).Magnitude();
+template <typename Kind>
+void FluxIntegrand<Kind>::add_point(const gp_Pnt& p, const gp_Vec& du, const gp_Vec& dv, double w,
+                                    Sums& sums) const {
   // Positions are good to eps |p|, derivatives to eps |p| per step of the knots.
   const double reach = std::abs(p.X()) + std::abs(p.Y()) + std::abs(p.Z());
-  const double slope_u = speed_u + u_degree_ * reach / least_u_step_;
-  const double slope_v = speed_v + v_degree_ * reach / least_v_step_;
-  const double mixed = std::abs(w) * (slope_u * speed_v + slope_v * speed_u);
-  sums.size += std::abs(w * height * jacobian);
-  sums.noise += std::abs(height) * mixed + reach * std::abs(w * jacobian);
-  sums.projected_noise += mixed;
+  kind_.add({p, du, dv, reach, du.Magnitude() + u_degree_ * reach / least_u_step_,
+             dv.Magnitude() + v_degree_ * reach / least_v_step_},
+            w, sums);
 }
 
-void FluxIntegrand::add_piece(double from, double to, double v, const UnitRule& rule, double sign,
-                              FluxSums& sums) const {
+template <typename Kind>
+void FluxIntegrand<Kind>::add_piece(double from, double to, double v, const UnitRule& rule,
+                                    double sign, Sums& sums) const {
   gp_Pnt p;
   gp_Vec du, dv;
   for (size_t k = 0; k < rule.nodes.size(); ++k) {
@@ -219,8 +207,9 @@ void FluxIntegrand::add_piece(double from, double to, double v, const UnitRule& 
   }
 }
 
-void FluxIntegrand::add_span(const Line& line, int ordinal, double from, double to, double sign,
-                             const Table& table, FluxSums& sums) const {
+template <typename Kind>
+void FluxIntegrand<Kind>::add_span(const Line& line, int ordinal, double from, double to,
+                                   double sign, const Table& table, Sums& sums) const {
   const KnotVector& knots = spline_->u_knots();
   const int span = knots.spans()[static_cast<size_t>(ordinal)];
   const auto count = static_cast<size_t>(knots.degree()) + 1;
@@ -250,8 +239,9 @@ void FluxIntegrand::add_span(const Line& line, int ordinal, double from, double 
   }
 }
 
-FluxSums FluxIntegrand::line(double u, double v, const Table& table) const {
-  FluxSums sums;
+template <typename Kind>
+typename Kind::Sums FluxIntegrand<Kind>::line(double u, double v, const Table& table) const {
+  Sums sums;
   const double low = std::min(start_, u);
   const double high = std::max(start_, u);
   if (!(low < high)) return sums;
@@ -272,13 +262,14 @@ FluxSums FluxIntegrand::line(double u, double v, const Table& table) const {
   return sums;
 }
 
-FluxSums FluxIntegrand::inner(double u, double v, bool fine) const {
+template <typename Kind>
+typename Kind::Sums FluxIntegrand<Kind>::inner(double u, double v, bool fine) const {
   const Table& table = fine ? fine_rule_ : rule_;
   if (spline_) return line(u, v, table);
   const double low = std::min(start_, u);
   const double high = std::max(start_, u);
   const double sign = u >= start_ ? 1.0 : -1.0;
-  FluxSums sums;
+  Sums sums;
   double from = low;
   const auto piece = [&](double to) {
     const int parts =
@@ -296,5 +287,8 @@ FluxSums FluxIntegrand::inner(double u, double v, bool fine) const {
   if (high > from) piece(high);
   return sums;
 }
+
+template class FluxIntegrand<FluxKind>;
+template class FluxIntegrand<MomentKind>;
 
 }  // namespace isochor::internal

@@ -7,6 +7,8 @@
 #pragma once
 
 #include <Geom_Surface.hxx>
+#include <algorithm>
+#include <array>
 #include <gp_Pnt.hxx>
 #include <gp_Vec.hxx>
 #include <optional>
@@ -14,6 +16,7 @@
 
 #include "isochor/bspline/surface.h"
 #include "isochor/step/trim_region.h"
+#include "isochor/volume/moments.h"
 
 namespace isochor::internal {
 
@@ -23,6 +26,14 @@ struct UnitRule {
 };
 UnitRule unit_rule(int count);
 
+// A point of the surface with what its rounding errors are relative to: `reach` for the position,
+// the noisy speeds, which hold it too, for the derivatives.
+struct SurfacePoint {
+  gp_Pnt p;
+  gp_Vec du, dv;
+  double reach = 0.0, noisy_u = 0.0, noisy_v = 0.0;
+};
+
 // Integrals of the flux and its companions. `size` and the noises are integrals of absolute values:
 // what rounding errors of the terms and of the derivatives scale with.
 struct FluxSums {
@@ -30,11 +41,50 @@ struct FluxSums {
   long double size = 0.0, noise = 0.0, projected_noise = 0.0;
 
   void add(const FluxSums& other, double factor);
+  double distance(const FluxSums& other) const;
+  void add_distances(const FluxSums& a, const FluxSums& b);
+  double largest_noise() const { return static_cast<double>(noise); }
 };
 
+// The flux of (0, 0, z - z0).
+struct FluxKind {
+  using Sums = FluxSums;
+  static constexpr int kFactors = 3;      // the integrand has degree 3d - 1
+  static constexpr int kLeastPoints = 6;  // areas are not polynomial: a few more than flux needs
+
+  double z0 = 0.0;
+  void add(const SurfacePoint& at, double weight, FluxSums& sums) const;
+};
+
+// The integrals of f(r) r.N of moments.h, r = (S - origin) / length, N = S_u x S_v.
+struct MomentSums {
+  std::array<long double, kMomentCount> value{};
+  std::array<double, kMomentCount> noise{};
+  long double size = 0.0;  // of |r.N|
+
+  void add(const MomentSums& other, double factor);
+  double distance(const MomentSums& other) const;
+  void add_distances(const MomentSums& a, const MomentSums& b);
+  double largest_noise() const { return *std::max_element(noise.begin(), noise.end()); }
+};
+
+// `length` is about as large as the body, so that all ten have numbers of one size.
+struct MomentKind {
+  using Sums = MomentSums;
+  static constexpr int kFactors = 5;
+  static constexpr int kLeastPoints = 3;
+
+  Vec3 origin = Vec3::Zero();
+  double length = 1.0;
+  void add(const SurfacePoint& at, double weight, MomentSums& sums) const;
+};
+
+// Instantiated for the two kinds.
+template <typename Kind>
 class FluxIntegrand {
  public:
-  FluxIntegrand(const Handle(Geom_Surface) & surface, double z0);
+  using Sums = typename Kind::Sums;
+  FluxIntegrand(const Handle(Geom_Surface) & surface, const Kind& kind);
 
   // All rules are exact; false: pieces must be tested.
   bool polynomial() const { return polynomial_; }
@@ -50,7 +100,7 @@ class FluxIntegrand {
   void prepare_at(double start, double u_end, double v_low, double v_high);
 
   // Q and its companions at (u, v). `fine`: with a larger rule, to see what the rule is worth.
-  FluxSums inner(double u, double v, bool fine) const;
+  Sums inner(double u, double v, bool fine) const;
 
  private:
   struct Line;  // a B-spline surface contracted at one v
@@ -60,18 +110,19 @@ class FluxIntegrand {
     std::vector<double> values, slopes;  // [span][point][function]
   };
 
+  int exact_points() const { return (Kind::kFactors * u_degree_ + 1) / 2; }
   Table table_of(int points) const;
   void choose_rules(double u_end, double v_low, double v_high);
-  FluxSums line(double u, double v, const Table& table) const;
+  Sums line(double u, double v, const Table& table) const;
   void add_span(const Line& line, int ordinal, double from, double to, double sign,
-                const Table& table, FluxSums& sums) const;
+                const Table& table, Sums& sums) const;
   void add_piece(double from, double to, double v, const UnitRule& rule, double sign,
-                 FluxSums& sums) const;
+                 Sums& sums) const;
   void add_point(const gp_Pnt& p, const gp_Vec& du, const gp_Vec& dv, double weight,
-                 FluxSums& sums) const;
+                 Sums& sums) const;
 
   Handle(Geom_Surface) surface_;
-  double z0_;
+  Kind kind_;
   double start_ = 0.0;
   bool polynomial_ = false, plane_ = false, angular_u_ = false;
   int u_degree_ = 0, v_degree_ = 0;

@@ -60,8 +60,13 @@ void transfer(Io& io, ShapeFacts& f) {
      f.diagonal, f.names, f.coloured);
 }
 template <typename Io>
+void transfer(Io& io, MomentIntegrals& f) {
+  io(f.origin, f.value, f.bound);
+}
+template <typename Io>
 void transfer(Io& io, SolidModel& f) {
-  io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.notices);
+  io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.moments,
+     f.notices);
 }
 template <typename Io>
 void transfer(Io& io, WriteReport& f) {

@@ -6,10 +6,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "isochor/bspline/patch_model.h"
+#include "isochor/volume/moments.h"
 
 namespace isochor {
 
@@ -70,7 +72,8 @@ struct SolidModel {
   std::vector<FaceFacts> faces;
   std::vector<EdgeFacts> edges;
   ShapeFacts facts;
-  std::vector<std::string> notices;  // repairs and warnings of the reader, in words
+  std::optional<MomentIntegrals> moments;  // when asked for and the shape is closed
+  std::vector<std::string> notices;        // repairs and warnings of the reader, in words
 };
 
 // What a child process may use.
@@ -81,6 +84,7 @@ struct BridgeLimits {
 
 struct ReadOptions {
   std::vector<int> convert;  // 0-based faces to turn into B-spline patches although they are not
+  bool moments = false;      // also the moment integrals, which cost several times the volume
   BridgeLimits limits;
 };
 

@@ -94,6 +94,9 @@ void set_principal(Moments& result) {
 }  // namespace
 
 Moments moments_from(const MomentIntegrals& m) {
+  if (std::isinf(m.bound[0])) {
+    throw InputError("", "", "the outline of a face does not close, so its moments are not known");
+  }
   const double least = std::abs(m.value[0]) - m.bound[0];
   if (!(least > 0.0) || !std::isfinite(m.value[0])) {
     throw InputError("", "",
