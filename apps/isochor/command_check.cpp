@@ -114,6 +114,7 @@ int run_check(const CheckOptions& options, const Common& common) {
   if (loaded.surroundings.closed) {
     print(common, format("volume: %.15g %s^3, error at most %.2g", loaded.volume, unit.c_str(),
                          loaded.volume_bound));
+    if (!gaps_text(loaded).empty()) print(common, gaps_text(loaded));
   }
   Value result = Value::object()
                      .set("valid", findings.empty())
@@ -123,7 +124,8 @@ int run_check(const CheckOptions& options, const Common& common) {
                      .set("max_smooth_angle_rad", m.angle)
                      .set("max_tolerance", m.tolerance)
                      .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())
-                     .set("bound", loaded.volume_bound);
+                     .set("bound", loaded.volume_bound)
+                     .set("undefined_by_gaps", loaded.undefined_by_gaps);
   if (original) {
     print(common, "against " + options.against + ":");
     result.set("against", compare(loaded, *original, common));

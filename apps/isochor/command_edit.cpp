@@ -146,7 +146,9 @@ int run_edit(const EditOptions& options, const Common& common) {
 
   Account account;
   account.outcome = overall_outcome(certificates);
-  account.extra = {{"model", Value(options.model)}, {"edits_file", Value(options.edits)}};
+  account.extra = {{"model", Value(options.model)},
+                   {"edits_file", Value(options.edits)},
+                   {"undefined_by_gaps", Value(loaded.undefined_by_gaps)}};
   if (account.outcome == Outcome::kDone) {
     if (!options.picture.empty() || !options.html.empty()) {
       account.png = encode_png(draw_edit(loaded, session, certificates, common));
@@ -154,6 +156,8 @@ int run_edit(const EditOptions& options, const Common& common) {
     WrittenModel written = write_edited_model(loaded, session, options.output, common);
     account.extra.insert(account.extra.end(), written.report.begin(), written.report.end());
     account.lines = std::move(written.lines);
+    if (!gaps_text(loaded).empty())
+      account.lines.push_back(gaps_text(loaded) + ", not of its change");
     if (written.written) {
       account.extra.emplace_back("output", options.output);
       if (!options.picture.empty()) account.extra.emplace_back("picture", options.picture);

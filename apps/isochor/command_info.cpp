@@ -198,6 +198,9 @@ int run_info(const InfoOptions& options, const Common& common) {
                              unit.c_str(), loaded.volume_bound,
                              loaded.volume >= 0 ? "oriented outwards" : "oriented inwards")
                     : "open: " + loaded.surroundings.why_open);
+  if (loaded.surroundings.closed && !gaps_text(loaded).empty()) {
+    print(common, gaps_text(loaded));
+  }
   Value joins = Value::list();
   for (const Join& join : model.joins) joins.push(join_value(model, join));
   result.set("unit", unit)
@@ -206,7 +209,8 @@ int run_info(const InfoOptions& options, const Common& common) {
       .set("closed", loaded.surroundings.closed)
       .set("why_open", loaded.surroundings.why_open)
       .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())
-      .set("bound", loaded.volume_bound);
+      .set("bound", loaded.volume_bound)
+      .set("undefined_by_gaps", loaded.undefined_by_gaps);
   print_json(common, result);
   return kExitDone;
 }

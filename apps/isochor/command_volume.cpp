@@ -41,6 +41,7 @@ int run_volume(const VolumeOptions& options, const Common& common) {
     return kExitNo;
   }
   Value result = Value::object().set("volume", loaded.volume).set("bound", loaded.volume_bound);
+  result.set("undefined_by_gaps", loaded.undefined_by_gaps);
   std::string exact;
   try {
     if (options.exact) exact = exact_text(loaded);
@@ -61,6 +62,7 @@ int run_volume(const VolumeOptions& options, const Common& common) {
     write_file(options.gradient, to_json(rows, -1));
   }
   print(common, format("%.17g (error at most %.2g)", loaded.volume, loaded.volume_bound));
+  if (!gaps_text(loaded).empty()) print(common, gaps_text(loaded));
   if (options.exact) print(common, "exact: " + exact);
   if (moments) print_moments(common, *moments, loaded.patches.unit);
   if (!options.gradient.empty()) print(common, "gradient: " + options.gradient);

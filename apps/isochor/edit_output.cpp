@@ -23,7 +23,8 @@ Value facts_value(const ShapeFacts& facts) {
       .set("max_vertex_gap", facts.max_vertex_gap)
       .set("area", facts.area)
       .set("volume", facts.volume)
-      .set("volume_bound", facts.volume_bound);
+      .set("volume_bound", facts.volume_bound)
+      .set("undefined_by_gaps", facts.undefined_by_gaps());
 }
 
 WrittenModel write_solid(const LoadedModel& before, const EditSession& session,

@@ -43,6 +43,8 @@ LoadedModel from_solid(SolidModel solid, std::vector<int> converted) {
   loaded.patches = solid.patches;
   loaded.volume = solid.facts.volume;
   loaded.volume_bound = solid.facts.volume_bound;
+  loaded.gap_tolerance = solid.facts.gap_tolerance();
+  loaded.undefined_by_gaps = solid.facts.undefined_by_gaps();
   loaded.surroundings.closed = solid.facts.closed;
   if (!solid.facts.closed) {
     loaded.surroundings.why_open = std::to_string(solid.facts.free_edges) + " free edges, " +
@@ -58,6 +60,14 @@ LoadedModel from_solid(SolidModel solid, std::vector<int> converted) {
 #endif
 
 }  // namespace
+
+std::string gaps_text(const LoadedModel& loaded) {
+  if (loaded.undefined_by_gaps == 0.0) return "";
+  const char* unit = loaded.patches.unit.c_str();
+  return format(
+      "gaps of up to %.2g %s leave %.2g %s^3 of the volume undefined (tolerance times area)",
+      loaded.gap_tolerance, unit, loaded.undefined_by_gaps, unit);
+}
 
 bool is_cad_file(const std::string& path) {
   const std::string extension = extension_of(path);

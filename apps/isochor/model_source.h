@@ -21,11 +21,19 @@ struct LoadedModel {
   Surroundings surroundings;
   double volume = 0.0;  // total, signed
   double volume_bound = 0.0;
+  // What gaps between faces leave open in the volume: their tolerance times the area. Patches that
+  // share their points have none.
+  double gap_tolerance = 0.0;
+  double undefined_by_gaps = 0.0;
 #ifdef ISOCHOR_WITH_OCCT
   std::optional<SolidModel> solid;
   std::vector<int> converted;  // 0-based faces that were turned into B-splines for this edit
 #endif
 };
+
+// "gaps of up to 1e-07 m leave 2e-05 m^3 of the volume undefined (tolerance times area)"; empty
+// when there are none.
+std::string gaps_text(const LoadedModel& loaded);
 
 // True for STEP, IGES and BREP by extension.
 bool is_cad_file(const std::string& path);

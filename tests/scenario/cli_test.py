@@ -92,7 +92,8 @@ class Info(Scenario):
 class Volume(Scenario):
     def test_value_bound_and_rational_number(self):
         plain = self.run_json("volume", CUBE)
-        self.assertEqual(set(plain), {"volume", "bound", "exact"})
+        self.assertEqual(set(plain), {"volume", "bound", "undefined_by_gaps", "exact"})
+        self.assertEqual(plain["undefined_by_gaps"], 0, "the patches share their points")
         self.assertIsNone(plain["exact"])
         self.assertLessEqual(abs(plain["volume"] - 1), plain["bound"])
         self.assertEqual(self.run_json("volume", CUBE, "--exact")["exact"], "1")
@@ -116,7 +117,8 @@ class Volume(Scenario):
 
     def test_moments_of_the_unit_cube(self):
         result = self.run_json("volume", CUBE, "--moments")
-        self.assertEqual(set(result), {"volume", "bound", "exact", "moments"})
+        self.assertEqual(set(result), {"volume", "bound", "undefined_by_gaps", "exact",
+                                       "moments"})
         moments = result["moments"]
         self.assertLessEqual(abs(moments["volume"] - 1), moments["volume_bound"])
         for i in range(3):
@@ -159,6 +161,23 @@ class Volume(Scenario):
         model["points"] = [[x, y, 0] for x, y, _ in model["points"]]
         (WORK / "flat.isochor.json").write_text(json.dumps(model))
         self.expect(3, "volume", "flat.isochor.json", "--moments", says="not different from zero")
+
+    def test_what_gaps_leave_open_stands_beside_the_volume(self):
+        check, info = self.run_json("check", HULL), self.run_json("info", HULL)
+        tolerance = max(check["max_gap"], check["max_tolerance"])
+        open_part = tolerance * math.fsum(face["area"] for face in info["faces"])
+        self.assertGreater(open_part, 0)
+        for result in (check, info, self.run_json("volume", HULL)):
+            self.assertAlmostEqual(result["undefined_by_gaps"], open_part, delta=1e-12 * open_part)
+        words = f"gaps of up to {tolerance:.2g} m leave {open_part:.2g} m^3 of the volume undefined"
+        for command in ("check", "info", "volume"):
+            self.assertIn(words, isochor(command, HULL).stdout, command)
+        self.expect(0, "edit", HULL, HULL_PULL, "-o", "hull.step", "--report", "report.json",
+                    leaves={"hull.step", "report.json"})
+        report = json.loads((WORK / "report.json").read_text())
+        self.assertEqual(report["undefined_by_gaps"], info["undefined_by_gaps"])
+        self.assertEqual(report["check"]["before"]["undefined_by_gaps"], info["undefined_by_gaps"])
+        self.assertNotIn("undefined", isochor("info", CUBE).stdout)
 
     def test_models_that_are_not_polynomial_patches_have_no_rational_volume(self):
         self.expect(3, "volume", HULL, "--exact", says="omit --exact")

@@ -5,6 +5,7 @@
 // All lengths are in the file's own unit, and coordinates are the file's own doubles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -61,6 +62,11 @@ struct ShapeFacts {
   double diagonal = 0.0;
   std::vector<std::string> names;  // all labels of shapes in file order
   int coloured = 0;                // sub-shapes with a colour
+
+  // Faces that meet only within t enclose a volume that is defined only up to about t times the
+  // area, however well it is computed; t is the largest of tolerances and measured gaps.
+  double gap_tolerance() const { return std::max({max_tolerance, max_edge_gap, max_vertex_gap}); }
+  double undefined_by_gaps() const { return gap_tolerance() * area; }
 };
 
 struct SolidModel {
