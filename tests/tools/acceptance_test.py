@@ -13,6 +13,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tools/acce
 from ledger import Ledger  # noqa: E402
 from part21 import StepFile  # noqa: E402
 from solids import ulps  # noqa: E402
+from whole_solids import LEFT_OPEN, Face, judge  # noqa: E402
 from splines import Surface, basis, flux, span_polynomials  # noqa: E402
 
 KNOTS = [0.0, 0.0, 0.0, 0.5, 1.25, 1.25, 3.0, 3.0, 3.0]  # degree 2, a double knot
@@ -28,6 +29,64 @@ DATA;
   (0.,1.),(0.,1.),.UNSPECIFIED.);
 ENDSEC;
 """
+
+
+class FakeProbe:
+    """Answers like isochor_solid_probe, from tables."""
+
+    def __init__(self, slow, faces=None, third=None):
+        self.slow, self.faces, self.third = slow, faces, third
+
+    def run(self, _path, _number, method, argument, *_):
+        if method == "adaptive":
+            value = self.slow.get(argument)
+            return None if value is None else {"volume": value}
+        if method == "faces":
+            return self.faces and {"faces": self.faces}
+        return self.third
+
+
+class WholeSolids(unittest.TestCase):
+    OURS = {"cones": 100.0, "cones_bound": 1e-11, "spread": 1e-12, "tolerance": 1e-7, "edge_gap": 0.0,
+            "area": 100.0}
+    FACES = {0: Face(60.0, 60.0, 1e-12), 1: Face(40.0, 40.0 + 1e-6, 1e-12)}
+
+    def verdict(self, *answers, **changes):
+        return judge(FakeProbe(*answers), ("solid.step", 0), {**self.OURS, **changes})[:2]
+
+    def test_agreement(self):
+        near = {"1e-10": 100.0 + 1e-8, "1e-12": 100.0 - 5e-12}
+        self.assertEqual(self.verdict(near), ("within our bound", []))
+        moving = {"1e-10": 100.0 + 3e-9, "1e-12": 100.0 + 1e-9}
+        self.assertEqual(self.verdict(moving), ("within its last change", []))
+        lost = {"1e-10": 101.0, "1e-12": 100.1, "1e-14": 100.03}
+        self.assertEqual(self.verdict(lost), ("not converged", []))
+        self.assertEqual(self.verdict({"1e-10": 100.0}), ("no result of OpenCASCADE in time", []))
+
+    def test_disagreement_is_settled_by_the_third_method(self):
+        off = dict.fromkeys(("1e-10", "1e-12", "1e-14"), 100.0 + 1e-6)
+
+        def third(volume, change=1e-9, left_open=0.0):
+            return {"volume": volume, "change": change, "open": left_open}
+
+        for answer, expected in ((third(40.0), "OpenCASCADE is wrong"),
+                                 (third(40.0, left_open=1e-6), "OpenCASCADE " + LEFT_OPEN),
+                                 (third(40.0 + 1e-6), "OURS"),
+                                 (third(40.0 + 5e-7), "UNEXPLAINED"),
+                                 (third(40.0, change=1e-6), "UNEXPLAINED"), (None, "UNEXPLAINED")):
+            verdict, reasons = self.verdict(off, self.FACES, answer)
+            self.assertEqual(verdict, expected)
+            self.assertEqual(len(reasons), 1)
+            self.assertIn("face 2", reasons[0])
+        same = {0: Face(60.0, 60.0, 1e-12)}
+        self.assertEqual(self.verdict(off, same), ("UNEXPLAINED", []))
+        self.assertEqual(self.verdict(off)[0], "UNEXPLAINED")
+
+    def test_axes_that_differ_beyond_the_gaps_are_ours(self):
+        near = {"1e-10": 100.0, "1e-12": 100.0}
+        self.assertEqual(self.verdict(near, spread=1e-6)[0], "within our bound")
+        self.assertEqual(self.verdict(near, spread=1e-4)[0], "OURS")
+        self.assertEqual(self.verdict(near, spread=float("nan"))[0], "OURS")
 
 
 class Splines(unittest.TestCase):

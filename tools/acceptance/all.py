@@ -4,7 +4,8 @@
 usage: all.py BUILD_FOLDER [REAL_FILES]
 
 BUILD_FOLDER is a CMake build tree such as build/release. REAL_FILES, a folder of CAD files, defaults to
-ISOCHOR_EXTRA_DATA; without either, real_files.py is skipped. Exit status 1 when a command fails.
+ISOCHOR_EXTRA_DATA; without either, real_files.py and whole_solids.py are skipped. Exit status 1 when a
+command fails.
 """
 import argparse
 import os
@@ -25,7 +26,9 @@ def main():
     real_files = [program] + ([options.real_files] if options.real_files else [])
     real_files += ["--out", options.build_folder / "acceptance" / "real_files"]
     commands = [("laws.py", [options.build_folder]), ("figure_four.py", [program]),
-                ("solids.py", [program]), ("real_files.py", real_files)]
+                ("solids.py", [program]), ("real_files.py", real_files),
+                ("whole_solids.py", [options.build_folder / "bin" / "isochor_solid_probe",
+                                     *([options.real_files] if options.real_files else [])])]
     here = pathlib.Path(__file__).resolve().parent
     verdicts = []
     for name, arguments in commands:
