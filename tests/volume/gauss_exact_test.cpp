@@ -1,7 +1,9 @@
 // Gauss rules and compensated sums against rational arithmetic.
 #include <gtest/gtest.h>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <utility>
 
@@ -9,9 +11,13 @@
 #include "isochor/exact/rational.h"
 #include "isochor/volume/compensated_sum.h"
 #include "isochor/volume/gauss.h"
+#include "support/fine_quadrature.h"
+#include "support/worst.h"
 
 namespace isochor {
 namespace {
+
+using testing::Worst;
 
 // The Legendre polynomial of the interval [0, 1] and its derivative, P_n(2 t - 1).
 struct Legendre {
@@ -71,6 +77,27 @@ TEST(GaussExact, WeightsAreWithinTwoUnitsInTheLastPlace) {
       const Rational weight = Rational(1) / (root * (Rational(1) - root) * at.slope * at.slope);
       const double exact = weight.to_double();
       EXPECT_LE(std::abs(rule.weights[i] - exact), 2 * 2 * kUnitRoundoff * exact) << n << ' ' << i;
+    }
+  }
+}
+
+// Before rounding to double: against fifty digits.
+TEST(GaussExact, LongRulesKeepTheirStatedBound) {
+  using Fifty = boost::multiprecision::cpp_bin_float_50;
+  const double unit = static_cast<double>(std::numeric_limits<long double>::epsilon()) / 2;
+  Worst worst("long_gauss_units", kLongGaussUnits);
+  for (int n = 1; n <= kMaxGaussPoints; n += n < 20 ? 1 : 4) {
+    const LongGaussRule rule = long_gauss_legendre(n);
+    const auto oracle = testing::fine_gauss<Fifty>(n);
+    for (size_t i = 0; i < rule.nodes.size(); ++i) {
+      const auto& [node, weight] = oracle[rule.nodes.size() - 1 - i];
+      const auto see = [&](long double computed, const Fifty& exact) {
+        const Fifty error = abs(Fifty(computed) - exact) / exact;
+        EXPECT_TRUE(worst.see(error.convert_to<double>() / unit)) << n << ' ' << i;
+      };
+      see(rule.nodes[i], node);
+      see(rule.from_end[i], 1 - node);
+      see(rule.weights[i], weight);
     }
   }
 }

@@ -54,7 +54,6 @@ TEST(RationalPatch, RuleGrowsWithTheWeightsAndNotWithTheShape) {
     PatchModel model = random_closed_model(51, options);
     const int points = VolumeForm(model).gauss_points(0).first;
     EXPECT_GT(points, last) << ratio;
-    EXPECT_LE(points, 40);
     last = points;
     for (Vec3& p : model.points) p.z() = 0.0;
     EXPECT_EQ(VolumeForm(model).gauss_points(0).first, points);
@@ -93,15 +92,17 @@ TEST(RationalPatch, KnotInsertionChangesTheRuleButNotTheVolume) {
   EXPECT_NEAR(a.value, b.value, 1e-14);
 }
 
-TEST(RationalPatch, BoundTellsWhenTheRuleIsTooCoarse) {
-  // Neighbouring weights 1 : 1e6 put the poles of the integrand next to the real axis.
-  PatchModel sheet = testing::random_open_patch(54, 3, 3, 3);
+TEST(RationalPatch, BoundTellsWhenTheCellsAreTooCoarse) {
+  // Neighbouring weights 1 : 1e12 put the poles of the integrand next to the real axis, nearer than
+  // cells may be cut.
+  PatchModel sheet = testing::random_open_patch(54, 3, 3, 1);
   Patch& patch = sheet.patches[0];
-  for (size_t k = 0; k < patch.points.size(); ++k) patch.weights.push_back(k % 2 == 0 ? 1.0 : 1e6);
+  for (size_t k = 0; k < patch.points.size(); ++k) patch.weights.push_back(k % 2 == 0 ? 1.0 : 1e12);
   const VolumeForm form(sheet);
-  EXPECT_GE(form.gauss_points(0).second, 25);
+  EXPECT_GE(form.gauss_points(0).second, 100);
+  EXPECT_LE(form.gauss_points(0).second, 1500);
   const Bounded computed = form.bounded_value(sheet.points);
-  EXPECT_GT(computed.bound, 1e-12);
+  EXPECT_GT(computed.bound, 1.0);
   EXPECT_TRUE(std::isfinite(computed.bound));
 }
 

@@ -117,6 +117,49 @@ TEST(ThetaExact, VolumesAndGradientsOfSmallModelsAreThoseOfTheRationals) {
   }
 }
 
+TEST(ThetaExact, RationalTensorsAreTheIntegrals) {
+  std::mt19937 random(443);
+  for (const KnotVector& knots :
+       {testing::random_clamped(random, 1, 2), testing::random_clamped(random, 3, 2, 3),
+        testing::random_unclamped(random, 2, 3), KnotVector::uniform(5, 1)}) {
+    const ExactThetaTensor theta(knots);
+    const SpanPolynomials table(knots);
+    for (int i = 0; i < theta.size(); ++i) {
+      for (int j = 0; j < theta.size(); ++j) {
+        for (int k = 0; k < theta.size(); ++k) {
+          EXPECT_EQ(theta(i, j, k), exact_theta(table, i, j, k)) << i << ' ' << j << ' ' << k;
+        }
+      }
+    }
+  }
+}
+
+// Two exact ways must give the same rational number, not nearly the same.
+TEST(ThetaExact, RationalVolumesAndGradientsAreThoseOfTheElements) {
+  for (const auto& [du, dv] : {std::pair{1, 1}, std::pair{2, 3}, std::pair{3, 1}}) {
+    PatchModel model = testing::random_open_patch(444, du, dv, 2, dv == 3);
+    model.patches[0].reversed = du == 2;
+    const ExactVolume exact(model);
+    EXPECT_EQ(exact_theta_volume(model, model.points), exact.value(model.points));
+    EXPECT_EQ(exact_theta_gradient(model, model.points), exact.gradient(model.points));
+  }
+  const PatchModel cube = testing::make_cube_model(2, 2);
+  EXPECT_EQ(exact_theta_volume(cube, cube.points), Rational(1));
+}
+
+TEST(ThetaExact, Bound) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    PatchModel model = testing::random_open_patch(445 + seed, 1 + static_cast<int>(seed % 4),
+                                                  1 + static_cast<int>(seed % 3), 2, seed % 2 == 1);
+    for (Vec3& p : model.points) p *= std::pow(10.0, static_cast<double>(seed % 7) - 3.0);
+    const Bounded computed = theta_bounded_volume(model, model.points);
+    EXPECT_EQ(computed.value, theta_volume(model, model.points));
+    const Rational error =
+        (Rational(computed.value) - ExactVolume(model).value(model.points)).abs();
+    EXPECT_LE(error, Rational(computed.bound)) << seed;
+  }
+}
+
 TEST(ThetaExact, PointsOtherThanTheModelsOwnAreTaken) {
   const PatchModel model = testing::make_cube_model(2, 2);
   auto doubled = model.points;

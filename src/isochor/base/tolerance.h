@@ -45,10 +45,15 @@ inline constexpr double kAlmostSmoothAngle = 0.087;  // 5 degrees
 // Dimensionless.
 inline constexpr double kSameCurvature = 1e-3;
 
-// Two quadrature rules for a patch with weights agree when the sum of |differences| over its
-// elements stays below kQuadratureNoise times the integral of the absolute integrand.
+// Two quadrature rules for the moments of a patch with weights agree when the sum of |differences|
+// over its elements stays below kQuadratureNoise times the integral of the absolute integrand.
 // Dimensionless: the rounding of either sum, which no finer rule can go below.
 inline constexpr double kQuadratureNoise = 32 * kUnitRoundoff;
+
+// A cell of a patch with weights has enough Gauss points when its remainder is at most
+// kQuadratureShare * r_x r_y r_z, the product of its poles' largest coordinates. Dimensionless: a
+// few hundred times less than the bound of the rounding there.
+inline constexpr double kQuadratureShare = 2 * kUnitRoundoff;
 
 // A displacement constraint is met when |got - asked| <= kReached * diagonal. Dimensionless;
 // the solve attains about 1e-15, so this is a promise with three digits to spare.

@@ -41,12 +41,6 @@ class Ring {
   std::vector<Pack> packs_;
 };
 
-void subtract(const Pack* a, const Pack* b, int count, Pack* out) {
-  for (int k = 0; k < count; ++k) {
-    for (int l = 0; l < kLanes; ++l) out[k].lane[l] = a[k].lane[l] - b[k].lane[l];
-  }
-}
-
 // The columns of a task as lanes of Packs, with e columns more on both sides. Columns beyond the
 // grid repeat the last one: they meet zeros of the tensors only.
 class Lanes {
@@ -137,15 +131,15 @@ bool has_weights(const Patch& patch) {
   return std::any_of(w.begin(), w.end(), [&](double each) { return each != w[0]; });
 }
 
-// tau^u sorted by the row k that enters, see RowsArguments.
-std::vector<double> sorted_by_row(const TauTensor& u) {
+// tau^u sorted by the row k that enters, see RowsArguments, times the sign of the patch.
+std::vector<double> sorted_by_row(const TauTensor& u, double sign) {
   const int d = u.degree();
   std::vector<double> sorted;
   for (int k = 0; k < u.size(); ++k) {
     for (int j = k - d; j < k + d; ++j) {
       for (int i = k - d; i <= k + d; ++i) {
         const bool inside = 0 <= i && i < u.size() && 0 <= j && j + 1 < u.size();
-        sorted.push_back(inside ? u(i, k, j) : 0.0);
+        sorted.push_back(inside ? sign * u(i, k, j) : 0.0);
       }
     }
   }
@@ -173,9 +167,8 @@ VolumeContraction::VolumeContraction(const PatchModel& model, InstructionSet set
 }
 
 void VolumeContraction::add_patch(const Patch& patch) {
-  PatchTensors tensors{
-      TauTensor(patch.u_knots), TauTensor(patch.v_knots), {}, patch.points, {}, patch.sign()};
-  tensors.u_rows = sorted_by_row(tensors.u);
+  PatchTensors tensors{TauTensor(patch.u_knots), TauTensor(patch.v_knots), {}, patch.points, {}};
+  tensors.u_rows = sorted_by_row(tensors.u, patch.sign());
   for (int i = 0; i < patch.u_size(); i += kRowsOfTask) {
     for (int j = 0; j < patch.v_size(); j += kStripColumns) {
       tasks_.push_back({static_cast<int>(patches_.size()),
@@ -237,7 +230,7 @@ double VolumeContraction::contract(const Task& task, int axis, const std::vector
       const int* row = &patch.points[static_cast<size_t>(next) * m];
       gather<kColumns>(lanes, row, next + 1 < n ? row + m : row, axis, points, here);
       if (next > std::max(0, walk.begin - d)) {
-        subtract(here, positions.row(next - 1), width, along.row(next - 1));
+        stages.subtract(here, positions.row(next - 1), width, along.row(next - 1));
       }
     }
   };
@@ -256,7 +249,7 @@ double VolumeContraction::contract(const Task& task, int axis, const std::vector
   };
   for (int k = walk.begin; k < walk.end; ++k) {
     enter_rows_until(k + d);
-    subtract(positions.row(k) + C, positions.row(k), width - C, steps.data());
+    stages.subtract(positions.row(k) + C, positions.row(k), width - C, steps.data());
     stages.pairs(along_v);
     for (int a = 0; a < 2 * d; ++a) {
       const int j = k - d + a;
@@ -304,12 +297,12 @@ void VolumeContraction::value_and_gradient(const std::vector<Vec3>& points, doub
     const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
     // Plain pointers and numbers, which the loop over the poles keeps in registers.
     const auto sink = [ids = patch.points.data(), targets = patch.target.data(), at = points.data(),
-                       out = rows.data(), uses = shared.data(), sign = patch.sign,
+                       out = rows.data(), uses = shared.data(),
                        zero](size_t place, const std::array<double, 3>& area) {
       const int target = targets[place];
       Vec3& row = target >= 0 ? out[target] : uses[~target];
-      row = Vec3(sign * area[0], sign * area[1], sign * area[2]);
-      return (at[ids[place]].z() - zero) * (sign * area[2]);
+      row = Vec3(area[0], area[1], area[2]);
+      return (at[ids[place]].z() - zero) * area[2];
     };
     parts[static_cast<size_t>(k)] = contract<Columns::kAll>(task, 0, points, sink);
   });
@@ -336,9 +329,9 @@ double VolumeContraction::value(const std::vector<Vec3>& points, double height, 
   run_tasks(static_cast<int>(tasks_.size()), threads, [&](int k) {
     const Task& task = tasks_[static_cast<size_t>(k)];
     const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
-    const auto sink = [ids = patch.points.data(), at = points.data(), sign = patch.sign, zero](
+    const auto sink = [ids = patch.points.data(), at = points.data(), zero](
                           size_t place, const std::array<double, 1>& area) {
-      return (at[ids[place]].z() - zero) * (sign * area[0]);
+      return (at[ids[place]].z() - zero) * area[0];
     };
     parts[static_cast<size_t>(k)] = contract<Columns::kOne>(task, 2, points, sink);
   });
@@ -356,10 +349,10 @@ std::vector<double> VolumeContraction::gradient_column(const std::vector<Vec3>& 
   run_tasks(static_cast<int>(tasks_.size()), threads, [&](int k) {
     const Task& task = tasks_[static_cast<size_t>(k)];
     const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
-    const auto sink = [targets = patch.target.data(), out = column.data(), uses = shared.data(),
-                       sign = patch.sign](size_t place, const std::array<double, 1>& area) {
+    const auto sink = [targets = patch.target.data(), out = column.data(), uses = shared.data()](
+                          size_t place, const std::array<double, 1>& area) {
       const int target = targets[place];
-      (target >= 0 ? out[target] : uses[~target]) = sign * area[0];
+      (target >= 0 ? out[target] : uses[~target]) = area[0];
       return 0.0;
     };
     contract<Columns::kOne>(task, axis, points, sink);
@@ -398,7 +391,7 @@ void VolumeContraction::add_gradient(const std::vector<Vec3>& points,
       const auto sink = [&](size_t place, const std::array<double, 3>& area) {
         const int row = row_of[static_cast<size_t>(patch.points[place])];
         if (row >= 0) {
-          rows[static_cast<size_t>(row)] += patch.sign * Vec3(area[0], area[1], area[2]);
+          rows[static_cast<size_t>(row)] += Vec3(area[0], area[1], area[2]);
         }
         return 0.0;
       };

@@ -74,10 +74,9 @@ class VolumeContraction {
  private:
   struct PatchTensors {
     TauTensor u, v;
-    std::vector<double> u_rows;  // per row k: 2d x (2d + 1), tau^u of i = k - d + b, j = k - d + a
+    std::vector<double> u_rows;  // per row k: 2d x (2d + 1), sign tau^u_ikj, i = k-d+b, j = k-d+a
     std::vector<int> points;     // #u x #v
     std::vector<int> target;     // the same; the point if only this place uses it, else ~slot
-    double sign = 1.0;
   };
   // A rectangle of one patch's poles, the unit of work: small enough for the caches.
   struct Task {

@@ -18,6 +18,7 @@ struct Avx2Lanes {
   static void store(Pack& pack, Vector a) { _mm256_store_pd(pack.lane, a); }
   static Vector broadcast(double a) { return _mm256_set1_pd(a); }
   static Vector zero() { return _mm256_setzero_pd(); }
+  static Vector difference(Vector a, Vector b) { return _mm256_sub_pd(a, b); }
   static Vector add_product(Vector a, Vector b, Vector c) { return _mm256_fmadd_pd(a, b, c); }
   static Vector subtract_product(Vector a, Vector b, Vector c) { return _mm256_fnmadd_pd(a, b, c); }
 };

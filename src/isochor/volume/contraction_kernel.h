@@ -53,6 +53,8 @@ struct RowsArguments {
 };
 
 struct Stages {
+  // out[k] = a[k] - b[k] for k = 0 .. count - 1.
+  void (*subtract)(const Pack* a, const Pack* b, int count, Pack* out) = nullptr;
   void (*pairs)(const PairsArguments&) = nullptr;
   void (*rows)(const RowsArguments&) = nullptr;
 };

@@ -12,6 +12,11 @@ struct PortableLanes {
   static void store(Pack& pack, const Vector& a) { pack = a; }
   static Vector broadcast(double a) { return {{a, a, a, a}}; }
   static Vector zero() { return {{0.0, 0.0, 0.0, 0.0}}; }
+  static Vector difference(const Vector& a, const Vector& b) {
+    Vector result;
+    for (int l = 0; l < kLanes; ++l) result.lane[l] = a.lane[l] - b.lane[l];
+    return result;
+  }
   static Vector add_product(const Vector& a, const Vector& b, const Vector& c) {
     Vector sum;
     for (int l = 0; l < kLanes; ++l) sum.lane[l] = c.lane[l] + a.lane[l] * b.lane[l];

@@ -1,7 +1,7 @@
 // The loops of contraction_kernel.h for one kind of vector, `Lanes`, which offers
 //   using Vector;  load(const Pack&), store(Pack&, Vector), broadcast(double), zero(),
 //   load_once(const Pack&), for numbers that are used twice and should stay in a register,
-//   add_product(a, b, c) = c + a b,  subtract_product(a, b, c) = c - a b.
+//   difference(a, b), add_product(a, b, c) = c + a b,  subtract_product(a, b, c) = c - a b.
 // Included by one source file for every instruction set. Nothing here may be shared with code that
 // is compiled for another one: no function of any library, and every template depends on Lanes,
 // which is local to its file.
@@ -121,10 +121,18 @@ struct StageLoops {
   }
 };
 
+template <typename Lanes>
+void subtract(const Pack* a, const Pack* b, int count, Pack* out) {
+  for (int k = 0; k < count; ++k) {
+    Lanes::store(out[k], Lanes::difference(Lanes::load(a[k]), Lanes::load(b[k])));
+  }
+}
+
 template <typename Lanes, Columns kColumns>
 Stages stages_of(int u_degree, int v_degree) {
   using Loops = StageLoops<Lanes, kColumns>;
   Stages stages;
+  stages.subtract = &subtract<Lanes>;
   switch (v_degree) {
     case 1:
       stages.pairs = &Loops::template pairs<1>;

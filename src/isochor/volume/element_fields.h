@@ -20,6 +20,9 @@ struct PatchForm {
   std::vector<int> points;      // #u x #v, indices into the table of points
   std::vector<double> weights;  // the same, or empty
   double sign = 1.0;
+  // Per element, u-major: what its quadrature misses, over r_x r_y r_z (see quadrature_choice.h).
+  // Empty without weights.
+  std::vector<double> remainder = {};
 
   int v_size() const { return v->knots().size(); }
   bool rational() const { return !weights.empty(); }
@@ -39,11 +42,17 @@ class ElementFields {
 
   void place(int su, int sv);
 
-  size_t grid_size() const { return kernel_.grid_size(); }
+  size_t grid_size() const { return kernel_.grid_size(su_, sv_); }
   bool sizes() const { return sizes_; }
-  size_t row_length() const { return static_cast<size_t>(patch_->v->gauss_points()); }
+  size_t row_length() const { return static_cast<size_t>(patch_->v->gauss_points(sv_)); }
   // Quadrature weight at each Gauss point, without the patch's sign.
   const std::vector<double>& weights() const { return quadrature_; }
+  // PatchForm::remainder of the placed element; zero without weights.
+  double remainder() const {
+    if (patch_->remainder.empty()) return 0.0;
+    return patch_->remainder[static_cast<size_t>(su_) * static_cast<size_t>(patch_->v->spans()) +
+                             static_cast<size_t>(sv_)];
+  }
   // Index into the table of points of the block's entry k (k = i (dv + 1) + j).
   int point(size_t k) const { return patch_->points[grid_index_[k]]; }
   size_t block_size() const { return grid_index_.size(); }

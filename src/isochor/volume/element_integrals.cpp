@@ -1,5 +1,8 @@
 #include "isochor/volume/element_integrals.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "isochor/base/tolerance.h"
 
 namespace isochor::internal {
@@ -8,6 +11,20 @@ namespace {
 // x_u y_v - x_v y_u at Gauss point g; `minus` is -1, or +1 for majorants.
 double jacobian(const Grid& x, const Grid& y, size_t g, double minus) {
   return x.du[g] * y.dv[g] + minus * (x.dv[g] * y.du[g]);
+}
+
+// Radii of the element's vectors: x and y from the middle, z from `height`.
+std::array<double, 3> radii(const ElementFields& fields, const std::vector<Vec3>& vectors,
+                            double height) {
+  Vec3 low = vectors[static_cast<size_t>(fields.point(0))];
+  Vec3 high = low;
+  for (size_t k = 1; k < fields.block_size(); ++k) {
+    const Vec3& p = vectors[static_cast<size_t>(fields.point(k))];
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  return {0.5 * (high.x() - low.x()), 0.5 * (high.y() - low.y()),
+          std::max(std::abs(low.z() - height), std::abs(high.z() - height))};
 }
 
 double minus_of(const ElementFields& fields) { return fields.sizes() ? 1.0 : -1.0; }
@@ -83,14 +100,38 @@ void gradient_integrands(const ElementFields& fields, const VectorGrid& p, Vecto
   }
 }
 
+double value_remainder(const ElementFields& fields, const std::vector<Vec3>& points,
+                       double height) {
+  if (fields.remainder() == 0.0) return 0.0;
+  const auto r = radii(fields, points, height);
+  return fields.remainder() * r[0] * r[1] * r[2];
+}
+
+double change_remainder(const ElementFields& fields, const std::vector<Vec3>& points, double height,
+                        const std::vector<Vec3>& directions) {
+  if (fields.remainder() == 0.0) return 0.0;
+  const auto r = radii(fields, points, height);
+  const auto d = radii(fields, directions, 0.0);
+  // dz J(x, y) + (z + dz) (J(dx, y) + J(x, dy) + J(dx, dy)).
+  return fields.remainder() *
+         (d[2] * r[0] * r[1] + (r[2] + d[2]) * (d[0] * r[1] + r[0] * d[1] + d[0] * d[1]));
+}
+
 double rounding_factor(const PatchForm& patch) {
   const int degrees = patch.u->degree() + patch.v->degree();
   const int sums = patch.u->gauss_points() + patch.v->gauss_points();
-  // Each of the three factors: tables (9d + 6 per direction, one more for a slope), the shift of
-  // the coordinate, the displacement, and d + 2 for the contraction per direction. Then products,
-  // weights and sums; quotients double the count.
-  const double each = 10.0 * degrees + 20.0;
-  const double count = (patch.rational() ? 2.0 : 1.0) * (3.0 * each + 20.0) + sums;
+  const double tables = table_roundoffs(patch.u->degree()) + table_roundoffs(patch.v->degree());
+  // W and its slopes: tables, and d + 2 for the contraction a direction. Numerators also: shift,
+  // displacement, weight.
+  const double denominator = tables + degrees + 4.0;
+  const double numerator = denominator + 3.0;
+  // A quotient N / W: both, the inverse and the product. A slope (N' - W' (N / W)) / W: W' and the
+  // quotient and their product, the difference, then the inverse and the product.
+  const double quotient = numerator + denominator + 2.0;
+  const double slope = denominator + quotient + 2.0 + denominator + 2.0;
+  const double functions = patch.rational() ? quotient + 2.0 * slope : 3.0 * numerator;
+  // The products of the integrand, the rule's weights and the sum.
+  const double count = functions + 14.0 + tables + sums;
   // Second-order terms and the rounding of the majorant itself: far below one percent.
   return 1.01 * count * kUnitRoundoff;
 }

@@ -30,6 +30,13 @@ std::array<double, 3> element_line(const ElementFields& fields, const VectorGrid
 // ready for ElementFields::project.
 void gradient_integrands(const ElementFields& fields, const VectorGrid& p, VectorGrid& out);
 
+// What quadrature on the placed element may miss of the integral of (z - height) (x_u y_v - x_v
+// y_u), rounding apart, and of its change when the points move by `directions`. Zero without
+// weights.
+double value_remainder(const ElementFields& fields, const std::vector<Vec3>& points, double height);
+double change_remainder(const ElementFields& fields, const std::vector<Vec3>& points, double height,
+                        const std::vector<Vec3>& directions);
+
 // |computed - exact quadrature| <= rounding_factor(patch) * majorant, for element_value and the sum
 // of the element_line terms. Counted step by step in docs/volume.md, "Rounding".
 double rounding_factor(const PatchForm& patch);

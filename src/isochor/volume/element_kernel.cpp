@@ -26,7 +26,7 @@ ElementKernel::ElementKernel(const SpanTable& u, const SpanTable& v, bool sizes)
       row_slopes_(rows_.size()) {}
 
 void ElementKernel::evaluate(int su, int sv, const std::vector<double>& block, Grid& out) {
-  const int nv = v_->gauss_points();
+  const int nv = v_->gauss_points(sv);
   const int columns = v_->degree() + 1;
   std::fill(rows_.begin(), rows_.end(), 0.0);
   std::fill(row_slopes_.begin(), row_slopes_.end(), 0.0);
@@ -37,7 +37,7 @@ void ElementKernel::evaluate(int su, int sv, const std::vector<double>& block, G
       add_scaled(nv, c, slopes(*v_, sv, j), &row_slopes_[static_cast<size_t>(i) * nv]);
     }
   }
-  out.resize(grid_size());
+  out.resize(grid_size(su, sv));
   std::fill(out.value.begin(), out.value.end(), 0.0);
   std::fill(out.du.begin(), out.du.end(), 0.0);
   std::fill(out.dv.begin(), out.dv.end(), 0.0);
@@ -46,7 +46,7 @@ void ElementKernel::evaluate(int su, int sv, const std::vector<double>& block, G
     const double* row_slope = &row_slopes_[static_cast<size_t>(i) * nv];
     const double* b = u_->values(su, i);
     const double* db = slopes(*u_, su, i);
-    for (int g = 0; g < u_->gauss_points(); ++g) {
+    for (int g = 0; g < u_->gauss_points(su); ++g) {
       const size_t start = static_cast<size_t>(g) * nv;
       add_scaled(nv, b[g], row, &out.value[start]);
       add_scaled(nv, db[g], row, &out.du[start]);
@@ -56,7 +56,7 @@ void ElementKernel::evaluate(int su, int sv, const std::vector<double>& block, G
 }
 
 void ElementKernel::accumulate(int su, int sv, const Grid& a, std::vector<double>& block) {
-  const int nv = v_->gauss_points();
+  const int nv = v_->gauss_points(sv);
   const int columns = v_->degree() + 1;
   std::fill(rows_.begin(), rows_.end(), 0.0);
   std::fill(row_slopes_.begin(), row_slopes_.end(), 0.0);
@@ -65,7 +65,7 @@ void ElementKernel::accumulate(int su, int sv, const Grid& a, std::vector<double
     double* row_slope = &row_slopes_[static_cast<size_t>(i) * nv];
     const double* b = u_->values(su, i);
     const double* db = slopes(*u_, su, i);
-    for (int g = 0; g < u_->gauss_points(); ++g) {
+    for (int g = 0; g < u_->gauss_points(su); ++g) {
       const size_t start = static_cast<size_t>(g) * nv;
       add_scaled(nv, b[g], &a.value[start], row);
       add_scaled(nv, db[g], &a.du[start], row);
@@ -79,9 +79,9 @@ void ElementKernel::accumulate(int su, int sv, const Grid& a, std::vector<double
 }
 
 void ElementKernel::weights(int su, int sv, std::vector<double>& out) const {
-  const int nv = v_->gauss_points();
-  out.resize(grid_size());
-  for (int g = 0; g < u_->gauss_points(); ++g) {
+  const int nv = v_->gauss_points(sv);
+  out.resize(grid_size(su, sv));
+  for (int g = 0; g < u_->gauss_points(su); ++g) {
     for (int h = 0; h < nv; ++h) {
       out[static_cast<size_t>(g) * nv + h] = u_->weights(su)[g] * v_->weights(sv)[h];
     }

@@ -27,7 +27,10 @@ class ElementKernel {
   ElementKernel(const SpanTable& u, const SpanTable& v, bool sizes = false);
 
   size_t block_size() const { return static_cast<size_t>(u_->degree() + 1) * (v_->degree() + 1); }
-  size_t grid_size() const { return static_cast<size_t>(u_->gauss_points()) * v_->gauss_points(); }
+  // The number of Gauss points of element (su, sv).
+  size_t grid_size(int su, int sv) const {
+    return static_cast<size_t>(u_->gauss_points(su)) * static_cast<size_t>(v_->gauss_points(sv));
+  }
 
   // The function sum_ij block_ij B_i B_j on element (su, sv). Cost O(n (d+1)(d+1+n)).
   void evaluate(int su, int sv, const std::vector<double>& block, Grid& out);

@@ -31,12 +31,24 @@ Legendre legendre_near_one(int n, long double y) {
   return {p, dp};
 }
 
+std::vector<double> rounded(const std::vector<long double>& numbers) {
+  std::vector<double> result;
+  result.reserve(numbers.size());
+  for (long double x : numbers) result.push_back(static_cast<double>(x));
+  return result;
+}
+
 }  // namespace
 
 GaussRule gauss_legendre(int count) {
+  const LongGaussRule rule = long_gauss_legendre(count);
+  return {rounded(rule.nodes), rounded(rule.from_end), rounded(rule.weights)};
+}
+
+LongGaussRule long_gauss_legendre(int count) {
   ISOCHOR_REQUIRE(1 <= count && count <= kMaxGaussPoints, count);
   const auto size = static_cast<size_t>(count);
-  GaussRule rule;
+  LongGaussRule rule;
   rule.nodes.resize(size);
   rule.from_end.resize(size);
   rule.weights.resize(size);
@@ -52,9 +64,9 @@ GaussRule gauss_legendre(int count) {
     }
     if (2 * i + 1 == size) y = 1.0L;
     const long double slope = legendre_near_one(count, y).slope;
-    const auto small = static_cast<double>(y / 2);
-    const auto large = static_cast<double>(1.0L - y / 2);
-    const auto weight = static_cast<double>(1.0L / (y * (2 - y) * slope * slope));
+    const long double small = y / 2;
+    const long double large = 1.0L - y / 2;
+    const long double weight = 1.0L / (y * (2 - y) * slope * slope);
     const size_t mirror = size - 1 - i;
     rule.nodes[i] = rule.from_end[mirror] = small;
     rule.from_end[i] = rule.nodes[mirror] = large;

@@ -9,6 +9,16 @@ namespace isochor {
 
 inline constexpr int kMaxGaussPoints = 64;
 
+// The numbers of a rule (see GaussRule) before they are rounded to double: each is within
+// kLongGaussUnits unit roundoffs of long double, relatively (tests hold them against fifty digits).
+struct LongGaussRule {
+  std::vector<long double> nodes;
+  std::vector<long double> from_end;
+  std::vector<long double> weights;
+};
+inline constexpr double kLongGaussUnits = 32.0;
+LongGaussRule long_gauss_legendre(int count);
+
 // Nodes ascending in (0, 1). `from_end[i]` is 1 - nodes[i], computed without cancellation, so that
 // both distances carry full relative accuracy; the weights are positive and sum to 1.
 struct GaussRule {

@@ -1,98 +1,117 @@
 #include "isochor/volume/quadrature_choice.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <random>
+#include <utility>
 
 #include "isochor/base/tolerance.h"
-#include "isochor/volume/element_integrals.h"
+#include "isochor/volume/gauss_remainder.h"
 
 namespace isochor::internal {
 namespace {
 
-// Integrals over all elements of a patch, and the sum of the absolute integrands.
-struct Sample {
-  std::vector<double> integrals;
-  double size = 0.0;
+static_assert(kMaxDepth <= kMaxHalvings);
+
+// The cells of (a part of) a span, and what they miss on each net that crosses it.
+struct Cut {
+  SpanCells cells;
+  std::vector<double> remainders;
+
+  int points() const {
+    int sum = 0;
+    for (const Cell& cell : cells) sum += cell.gauss_points;
+    return sum;
+  }
 };
 
-Sample sample(const PatchForm& patch, const std::vector<Vec3>& points) {
-  Sample result;
-  ElementFields fields(patch);
-  VectorGrid p;
-  for (int su = 0; su < patch.u->spans(); ++su) {
-    for (int sv = 0; sv < patch.v->spans(); ++sv) {
-      fields.place(su, sv);
-      evaluate_points(fields, points, 0.0, p);
-      result.integrals.push_back(element_value(fields, p));
-      for (size_t g = 0; g < fields.grid_size(); ++g) {
-        result.size += fields.weights()[g] * std::abs(p[2].value[g]) *
-                       (std::abs(p[0].du[g] * p[1].dv[g]) + std::abs(p[0].dv[g] * p[1].du[g]));
-      }
-    }
-  }
-  return result;
+Cut joined(Cut left, const Cut& right) {
+  left.cells.insert(left.cells.end(), right.cells.begin(), right.cells.end());
+  for (size_t k = 0; k < left.remainders.size(); ++k) left.remainders[k] += right.remainders[k];
+  return left;
 }
 
-double difference(const Sample& a, const Sample& b) {
-  double sum = 0.0;
-  for (size_t k = 0; k < a.integrals.size(); ++k) sum += std::abs(a.integrals[k] - b.integrals[k]);
-  return sum;
-}
-
-// Poles in [-1, 1]^3 that have nothing to do with each other.
-std::vector<Vec3> scattered_points(size_t count) {
-  std::minstd_rand random(1);
-  const double top = static_cast<double>(std::minstd_rand::max());
-  std::vector<Vec3> points(count);
-  for (Vec3& p : points) {
-    for (int axis = 0; axis < 3; ++axis) p[axis] = 2.0 * static_cast<double>(random()) / top - 1.0;
+// The cheapest cut of [begin, end] of a span. `nets`: the weights over it, for each span across.
+Cut cut_span(const std::vector<WeightNet>& nets, double begin, double end, int depth) {
+  const int least = std::max(2, exact_gauss_points(nets[0].rows - 1));
+  const int most = std::max(kMaxCellPoints, least);
+  std::vector<GaussRemainder> remainders;
+  int points = least;
+  for (const WeightNet& net : nets) {
+    remainders.emplace_back(net);
+    points = std::max(points, remainders.back().points(kQuadratureShare, points, most));
   }
-  return points;
+  const auto whole = [&](int count) {
+    Cut cut;
+    cut.cells = {{begin, end, count}};
+    for (const GaussRemainder& each : remainders) cut.remainders.push_back(each.bound(count));
+    return cut;
+  };
+  // Two halves need more than this together.
+  if (points <= 2 * least + 6) return whole(points);
+  if (depth == kMaxDepth) return whole(std::min(points, most));
+  std::vector<WeightNet> left;
+  std::vector<WeightNet> right;
+  for (const WeightNet& net : nets) {
+    auto [first, second] = halves(net);
+    left.push_back(std::move(first));
+    right.push_back(std::move(second));
+  }
+  const double middle = 0.5 * (begin + end);
+  Cut cut =
+      joined(cut_span(left, begin, middle, depth + 1), cut_span(right, middle, end, depth + 1));
+  return points <= most && points <= cut.points() ? whole(points) : cut;
 }
 
 }  // namespace
 
 std::shared_ptr<const SpanTable> TableCache::get(const KnotVector& knots, int gauss_points) {
+  return get(knots, std::vector<SpanCells>(knots.spans().size(), {{0.0, 1.0, gauss_points}}));
+}
+
+std::shared_ptr<const SpanTable> TableCache::get(const KnotVector& knots,
+                                                 const std::vector<SpanCells>& cells) {
   for (const auto& known : tables_) {
-    if (known->gauss_points() == gauss_points && known->knots() == knots) return known;
+    if (known->cells() == cells && known->knots() == knots) return known;
   }
-  tables_.push_back(std::make_shared<const SpanTable>(knots, gauss_points));
+  tables_.push_back(std::make_shared<const SpanTable>(knots, cells));
   return tables_.back();
 }
 
-int finer_rule(int gauss_points) {
-  return std::min(kMaxGaussPoints, gauss_points + std::max(2, gauss_points / 4));
-}
-
-void choose_rules(PatchForm& chosen, TableCache& tables) {
-  PatchForm patch = chosen;
-  std::iota(patch.points.begin(), patch.points.end(), 0);
-  const std::vector<Vec3> points = scattered_points(patch.points.size());
-  const auto limit = [](const SpanTable& table) {
-    return std::max(kMaxRationalGaussPoints, exact_gauss_points(table.degree()));
-  };
-  const auto finer = [&](const SpanTable& table) {
-    const int next = std::min(finer_rule(table.gauss_points()), limit(table));
-    return tables.get(table.knots(), next);
-  };
-  Sample current = sample(patch, points);
-  for (bool raised = true; raised;) {
-    raised = false;
-    for (const auto direction : {&PatchForm::u, &PatchForm::v}) {
-      if ((patch.*direction)->gauss_points() >= limit(*(patch.*direction))) continue;
-      PatchForm next = patch;
-      next.*direction = finer(*(patch.*direction));
-      Sample refined = sample(next, points);
-      if (difference(current, refined) <= kQuadratureNoise * refined.size) continue;
-      patch = std::move(next);
-      current = std::move(refined);
-      raised = true;
+QuadratureChoice choose_quadrature(const KnotVector& u, const KnotVector& v,
+                                   const std::vector<double>& weights) {
+  const size_t rows = u.spans().size();
+  const size_t columns = v.spans().size();
+  QuadratureChoice choice;
+  choice.remainder.assign(rows * columns, 0.0);
+  for (size_t su = 0; su < rows; ++su) {
+    std::vector<WeightNet> nets;
+    for (size_t sv = 0; sv < columns; ++sv) {
+      nets.push_back(net_of(u, v, weights, static_cast<int>(su), static_cast<int>(sv)));
+    }
+    Cut cut = cut_span(nets, 0.0, 1.0, 0);
+    choice.u.push_back(std::move(cut.cells));
+    for (size_t sv = 0; sv < columns; ++sv) {
+      choice.remainder[su * columns + sv] += cut.remainders[sv];
     }
   }
-  chosen.u = patch.u;
-  chosen.v = patch.v;
+  for (size_t sv = 0; sv < columns; ++sv) {
+    std::vector<WeightNet> nets;
+    for (size_t su = 0; su < rows; ++su) {
+      nets.push_back(transposed(net_of(u, v, weights, static_cast<int>(su), static_cast<int>(sv))));
+    }
+    Cut cut = cut_span(nets, 0.0, 1.0, 0);
+    choice.v.push_back(std::move(cut.cells));
+    for (size_t su = 0; su < rows; ++su) {
+      choice.remainder[su * columns + sv] += cut.remainders[su];
+    }
+  }
+  return choice;
+}
+
+void choose_rules(PatchForm& patch, TableCache& tables) {
+  QuadratureChoice choice = choose_quadrature(patch.u->knots(), patch.v->knots(), patch.weights);
+  patch.u = tables.get(patch.u->knots(), choice.u);
+  patch.v = tables.get(patch.v->knots(), choice.v);
+  patch.remainder = std::move(choice.remainder);
 }
 
 }  // namespace isochor::internal

@@ -1,4 +1,4 @@
-// How many Gauss points a patch with weights needs.
+// Cells and Gauss points for a patch with weights, and what they can miss.
 #pragma once
 
 #include <memory>
@@ -8,28 +8,38 @@
 
 namespace isochor::internal {
 
-// No patch gets more points per span than this, unless its degree alone asks for more.
-inline constexpr int kMaxRationalGaussPoints = 40;
-
-// Tables shared by all patches with the same knots and rule.
+// Tables shared by all patches with the same knots and rules.
 class TableCache {
  public:
   std::shared_ptr<const SpanTable> get(const KnotVector& knots, int gauss_points);
+  std::shared_ptr<const SpanTable> get(const KnotVector& knots,
+                                       const std::vector<SpanCells>& cells);
 
  private:
   std::vector<std::shared_ptr<const SpanTable>> tables_;
 };
 
-// The next finer rule: at least two points more, about a quarter more.
-int finer_rule(int gauss_points);
+// No cell gets more points than this, unless its degree alone asks for more; no span is halved more
+// often than that. Together they limit what extreme weights may cost: beyond ratios of about 1e5
+// between neighbours the bounds grow instead (they stay true).
+inline constexpr int kMaxCellPoints = 32;
+inline constexpr int kMaxDepth = 14;
 
-// Raises the rules of both directions of a patch with weights, from what its degrees ask for, until
-// going from a rule to the next finer one changes the volume integrals by no more than rounding.
-//
-// The test shape has pseudo-random poles (the same for everybody), because the shape of the moment
-// may be special: a flat disk in its own plane has no volume under any rule. So the choice depends
-// on knots and weights alone, which edits do not change. Convergence is geometric at a rate that
-// the weights determine.
+struct QuadratureChoice {
+  std::vector<SpanCells> u, v;  // per span
+  // Per element, u-major: the quadrature of z (x_u y_v - x_v y_u) misses the integral by at most
+  // this times r_x r_y r_z, whatever the poles: r_z is the largest |z| of the element's poles, r_x
+  // and r_y those of x and y measured from anywhere. (Rounding apart.)
+  std::vector<double> remainder;
+};
+
+// The cheapest choice found, from knots and weights alone, for which each cell misses at most
+// kQuadratureShare. Where W does not change along a direction, that direction keeps the exact rule.
+// Cost: a few microseconds per element and cell.
+QuadratureChoice choose_quadrature(const KnotVector& u, const KnotVector& v,
+                                   const std::vector<double>& weights);
+
+// Gives a patch with weights its tables and remainders.
 void choose_rules(PatchForm& patch, TableCache& tables);
 
 }  // namespace isochor::internal

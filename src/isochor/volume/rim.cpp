@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <utility>
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
 #include "isochor/exact/rational.h"
+#include "isochor/volume/gauss_remainder.h"
 #include "isochor/volume/span_polynomials.h"
 
 namespace isochor::internal {
@@ -136,6 +138,16 @@ std::vector<ExactSide> remaining_sides(const PatchModel& model,
   return sides;
 }
 
+// What the table's cells of a span may miss of the integral of x dy.
+double remainder_of(const SpanTable& table, const std::vector<double>& weights, int s) {
+  double sum = 0.0;
+  for (const Cell& cell : table.cells()[static_cast<size_t>(s)]) {
+    const WeightNet net = part_of(net_of(table.knots(), weights, s), cell.begin, cell.end);
+    sum += GaussRemainder(net, Integrand::kArea).bound(cell.gauss_points);
+  }
+  return sum;
+}
+
 }  // namespace
 
 Rim::Rim(const PatchModel& model, const std::vector<PatchForm>& forms, double x_origin)
@@ -155,10 +167,17 @@ Rim::Rim(const PatchModel& model, const std::vector<PatchForm>& forms, double x_
       curve.coefficients.push_back(std::move(shares));
       if (form.rational()) curve.weights.push_back(weight);
     }
-    // Two functions: tables, coefficients, contraction; then weights and sums.
-    const double each = 10.0 * curve.table->degree() + 20.0;
-    const double count =
-        (form.rational() ? 2.0 : 1.0) * (2.0 * each + 20.0) + curve.table->gauss_points();
+    for (int s = 0; form.rational() && s < curve.table->spans(); ++s) {
+      curve.remainders.push_back(remainder_of(*curve.table, curve.weights, s));
+    }
+    // As in element_integrals.cpp, with d + 4 for the shares that make up a coefficient.
+    const double shares = curve.table->degree() + 4.0;
+    const double table = table_roundoffs(curve.table->degree());
+    const double denominator = table + curve.table->degree() + 2.0 + shares;
+    const double numerator = denominator + 3.0;
+    const double functions =
+        form.rational() ? 2.0 * numerator + 4.0 * denominator + 8.0 : 2.0 * numerator;
+    const double count = functions + 10.0 + table + curve.table->gauss_points();
     rounding_factor_ = std::max(rounding_factor_, 1.01 * count * kUnitRoundoff);
     curves_.push_back(std::move(curve));
   }
@@ -191,7 +210,7 @@ void Rim::evaluate(const RimElement& at, const std::vector<Vec3>& vectors, int a
                    bool sizes, Values& out) const {
   const Curve& curve = curves_[static_cast<size_t>(at.curve)];
   const SpanTable& table = *curve.table;
-  const auto count = static_cast<size_t>(table.gauss_points());
+  const auto count = static_cast<size_t>(table.gauss_points(at.span));
   out.value.assign(count, 0.0);
   out.slope.assign(count, 0.0);
   std::vector<double> w(count, 0.0);
@@ -257,6 +276,49 @@ std::array<double, 2> Rim::area_line(const std::vector<Vec3>& points,
       sum[0] += sign * w[g] * (dx.value[g] * y.slope[g] + x.value[g] * dy.slope[g]);
       sum[1] += sign * w[g] * (dx.value[g] * dy.slope[g]);
     }
+  }
+  return sum;
+}
+
+std::array<double, 2> Rim::radii(const RimElement& at, const std::vector<Vec3>& vectors,
+                                 double origin) const {
+  const Curve& curve = curves_[static_cast<size_t>(at.curve)];
+  const int first = curve.table->first(at.span);
+  double x = 0.0;
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  for (int j = first; j <= first + curve.table->degree(); ++j) {
+    for (const Share& share : curve.coefficients[static_cast<size_t>(j)]) {
+      const Vec3& p = vectors[static_cast<size_t>(share.point)];
+      x = std::max(x, std::abs(p.x() - origin));
+      low = std::min(low, p.y());
+      high = std::max(high, p.y());
+    }
+  }
+  return {x, 0.5 * (high - low)};
+}
+
+double Rim::area_remainder(const std::vector<Vec3>& points,
+                           const std::vector<RimElement>& elements) const {
+  double sum = 0.0;
+  for (const RimElement& at : elements) {
+    const Curve& curve = curves_[static_cast<size_t>(at.curve)];
+    if (curve.remainders.empty()) continue;
+    const auto r = radii(at, points, x_origin_);
+    sum += curve.remainders[static_cast<size_t>(at.span)] * r[0] * r[1];
+  }
+  return sum;
+}
+
+double Rim::change_remainder(const std::vector<Vec3>& points, const std::vector<Vec3>& directions,
+                             const std::vector<RimElement>& elements) const {
+  double sum = 0.0;
+  for (const RimElement& at : elements) {
+    const Curve& curve = curves_[static_cast<size_t>(at.curve)];
+    if (curve.remainders.empty()) continue;
+    const auto r = radii(at, points, x_origin_);
+    const auto d = radii(at, directions, 0.0);
+    sum += curve.remainders[static_cast<size_t>(at.span)] * (d[0] * r[1] + (r[0] + d[0]) * d[1]);
   }
   return sum;
 }

@@ -58,6 +58,12 @@ class Rim {
                          std::vector<Vec3>& rows) const;
   // |computed - quadrature| <= rounding_factor() * majorant.
   double rounding_factor() const { return rounding_factor_; }
+  // What the quadrature of area, and of the sum of area_line, may miss, rounding apart: only sides
+  // with weights miss anything.
+  double area_remainder(const std::vector<Vec3>& points,
+                        const std::vector<RimElement>& elements) const;
+  double change_remainder(const std::vector<Vec3>& points, const std::vector<Vec3>& directions,
+                          const std::vector<RimElement>& elements) const;
 
  private:
   // A coefficient of a curve: sum of share * point, its weight included.
@@ -68,9 +74,13 @@ class Rim {
   struct Curve {
     std::shared_ptr<const SpanTable> table;
     std::vector<std::vector<Share>> coefficients;
-    std::vector<double> weights;  // sum of the shares' factors, or empty
+    std::vector<double> weights;     // sum of the shares' factors, or empty
+    std::vector<double> remainders;  // per span, over r_x r_y; empty without weights
     double sign = 1.0;
   };
+  // The largest distance of an element's points from `origin` in x and from their middle in y.
+  std::array<double, 2> radii(const RimElement& at, const std::vector<Vec3>& vectors,
+                              double origin) const;
   struct Values {
     std::vector<double> value, slope;
   };

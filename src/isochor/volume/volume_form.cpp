@@ -74,19 +74,16 @@ double local_height(const std::vector<Vec3>& points) {
 
 struct VolumeForm::Data {
   std::vector<PatchForm> patches;
-  std::vector<PatchForm> finer;        // patches with weights, with the next finer rule; else empty
   std::vector<std::vector<Use>> uses;  // per point
   std::vector<Element> elements;       // all of them
   double height = 0.0;
   Rim rim;  // only when height is not zero
 
-  // The integral of (z - height) dx dy over each element, in order.
-  std::vector<double> element_values(const std::vector<PatchForm>& forms,
-                                     const std::vector<Vec3>& points, const Support& support,
+  // The integral of (z - height) dx dy over each element, in order; `sizes`: its error bound.
+  std::vector<double> element_values(const std::vector<Vec3>& points, const Support& support,
                                      bool sizes) const;
-  // The same for the change along a line at s = 1; `sizes`: with the rounding factor included.
-  std::vector<double> element_changes(const std::vector<PatchForm>& forms,
-                                      const std::vector<Vec3>& points,
+  // The same for the change along a line at s = 1.
+  std::vector<double> element_changes(const std::vector<Vec3>& points,
                                       const std::vector<Vec3>& directions, const Support& support,
                                       bool sizes) const;
   void require_fits(const std::vector<Vec3>& points) const {
@@ -114,20 +111,6 @@ std::vector<Vec3> displacements(const std::vector<Vec3>& before, const std::vect
   return moved;
 }
 
-// How far the coarser of two rules is from the integral, element by element; `fine` only has the
-// patches with weights. Convergence is geometric: while each finer rule at least halves the error,
-// e <= |coarse - fine| + e / 2, so that e is at most twice the distance between the rules.
-double quadrature_error(const std::vector<Element>& elements, const std::vector<PatchForm>& finer,
-                        const std::vector<double>& coarse, const std::vector<double>& fine) {
-  double sum = 0.0;
-  size_t next = 0;
-  for (size_t k = 0; k < elements.size(); ++k) {
-    if (finer[static_cast<size_t>(elements[k].patch)].points.empty()) continue;
-    sum += 2.0 * std::abs(coarse[k] - fine[next++]);
-  }
-  return sum;
-}
-
 }  // namespace
 
 VolumeForm::VolumeForm(const PatchModel& model) {
@@ -144,20 +127,13 @@ VolumeForm::VolumeForm(const PatchModel& model) {
       }
     }
     PatchForm form = polynomial_form(patch, tables);
-    PatchForm finer;
-    if (form.rational()) {
-      choose_rules(form, tables);
-      finer = form;
-      finer.u = tables.get(patch.u_knots, internal::finer_rule(form.u->gauss_points()));
-      finer.v = tables.get(patch.v_knots, internal::finer_rule(form.v->gauss_points()));
-    }
+    if (form.rational()) choose_rules(form, tables);
     for (int su = 0; su < form.u->spans(); ++su) {
       for (int sv = 0; sv < form.v->spans(); ++sv) {
         data->elements.push_back({static_cast<int>(q), su, sv});
       }
     }
     data->patches.push_back(std::move(form));
-    data->finer.push_back(std::move(finer));
   }
   data->height = local_height(model.points);
   if (data->height != 0.0) data->rim = Rim(model, data->patches, model.points.front().x());
@@ -222,23 +198,23 @@ Support VolumeForm::support_of(const std::vector<int>& moved_points) const {
   return support;
 }
 
-std::vector<double> VolumeForm::Data::element_values(const std::vector<PatchForm>& forms,
-                                                     const std::vector<Vec3>& points,
+std::vector<double> VolumeForm::Data::element_values(const std::vector<Vec3>& points,
                                                      const Support& support, bool sizes) const {
   require_fits(points);
   std::vector<double> values;
   VectorGrid p;
-  for_each_element(forms, support.elements, sizes,
+  for_each_element(patches, support.elements, sizes,
                    [&](const PatchForm& patch, ElementFields& fields) {
                      evaluate_points(fields, points, height, p);
-                     const double factor = sizes ? rounding_factor(patch) : patch.sign;
-                     values.push_back(factor * element_value(fields, p));
+                     const double value = element_value(fields, p);
+                     values.push_back(sizes ? rounding_factor(patch) * value +
+                                                  value_remainder(fields, points, height)
+                                            : patch.sign * value);
                    });
   return values;
 }
 
-std::vector<double> VolumeForm::Data::element_changes(const std::vector<PatchForm>& forms,
-                                                      const std::vector<Vec3>& points,
+std::vector<double> VolumeForm::Data::element_changes(const std::vector<Vec3>& points,
                                                       const std::vector<Vec3>& directions,
                                                       const Support& support, bool sizes) const {
   require_fits(points);
@@ -246,14 +222,16 @@ std::vector<double> VolumeForm::Data::element_changes(const std::vector<PatchFor
   std::vector<double> values;
   VectorGrid p;
   VectorGrid d;
-  for_each_element(forms, support.elements, sizes,
-                   [&](const PatchForm& patch, ElementFields& fields) {
-                     evaluate_points(fields, points, height, p);
-                     evaluate_directions(fields, directions, d);
-                     const auto line = element_line(fields, p, d);
-                     const double factor = sizes ? rounding_factor(patch) : patch.sign;
-                     values.push_back(factor * (line[0] + line[1] + line[2]));
-                   });
+  for_each_element(
+      patches, support.elements, sizes, [&](const PatchForm& patch, ElementFields& fields) {
+        evaluate_points(fields, points, height, p);
+        evaluate_directions(fields, directions, d);
+        const auto line = element_line(fields, p, d);
+        const double change = line[0] + line[1] + line[2];
+        values.push_back(sizes ? rounding_factor(patch) * change +
+                                     change_remainder(fields, points, height, directions)
+                               : patch.sign * change);
+      });
   return values;
 }
 
@@ -268,7 +246,7 @@ std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points) const {
 }
 
 double VolumeForm::value(const std::vector<Vec3>& points, const Support& support) const {
-  const double local = total(data_->element_values(data_->patches, points, support, false));
+  const double local = total(data_->element_values(points, support, false));
   if (data_->height == 0.0) return local;
   return local + data_->height * data_->rim.area(points, data_->rim.elements_of(support.row_of));
 }
@@ -328,17 +306,15 @@ double VolumeForm::change(const std::vector<Vec3>& before, const std::vector<Vec
 
 Bounded VolumeForm::bounded_value(const std::vector<Vec3>& points) const {
   const Support all = whole();
-  const auto values = data_->element_values(data_->patches, points, all, false);
-  const auto fine = data_->element_values(data_->finer, points, all, false);
-  double bound = total(data_->element_values(data_->patches, points, all, true)) +
-                 quadrature_error(all.elements, data_->finer, values, fine);
-  double sum = total(values);
+  double bound = total(data_->element_values(points, all, true));
+  double sum = total(data_->element_values(points, all, false));
   if (data_->height != 0.0) {
     const Rim& rim = data_->rim;
     const double area = rim.area(points, rim.elements());
     sum += data_->height * area;
     bound +=
-        std::abs(data_->height) * rim.rounding_factor() * rim.area(points, rim.elements(), true);
+        std::abs(data_->height) * (rim.rounding_factor() * rim.area(points, rim.elements(), true) +
+                                   rim.area_remainder(points, rim.elements()));
   }
   // The last sums and products: three roundings of the result.
   return {sum, bound + 3.0 * kUnitRoundoff * std::abs(sum)};
@@ -347,18 +323,16 @@ Bounded VolumeForm::bounded_value(const std::vector<Vec3>& points) const {
 Bounded VolumeForm::bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                                    const Support& support) const {
   const auto moved = displacements(before, after, support);
-  const auto values = data_->element_changes(data_->patches, before, moved, support, false);
-  const auto fine = data_->element_changes(data_->finer, before, moved, support, false);
-  double bound = total(data_->element_changes(data_->patches, before, moved, support, true)) +
-                 quadrature_error(support.elements, data_->finer, values, fine);
-  double sum = total(values);
+  double bound = total(data_->element_changes(before, moved, support, true));
+  double sum = total(data_->element_changes(before, moved, support, false));
   if (data_->height != 0.0) {
     const Rim& rim = data_->rim;
     const auto elements = rim.elements_of(support.row_of);
     const auto line = rim.area_line(before, moved, elements);
     const auto sizes = rim.area_line(before, moved, elements, true);
     sum += data_->height * (line[0] + line[1]);
-    bound += std::abs(data_->height) * rim.rounding_factor() * (sizes[0] + sizes[1]);
+    bound += std::abs(data_->height) * (rim.rounding_factor() * (sizes[0] + sizes[1]) +
+                                        rim.change_remainder(before, moved, elements));
   }
   return {sum, bound + 3.0 * kUnitRoundoff * std::abs(sum)};
 }

@@ -8,8 +8,9 @@
 // i. An *element* is a rectangle of two non-empty knot spans of one patch.
 //
 // V is computed by Gauss quadrature per element. ceil(3d/2) points per direction integrate
-// polynomial patches (also those whose weights are all equal) exactly up to rounding. Other patches
-// get, once, in the constructor, as many points as it takes until finer rules agree, at most 40.
+// polynomial patches (also those whose weights are all equal) exactly up to rounding. Patches with
+// other weights get, once, in the constructor, cells and points for which the quadrature error is
+// proven to be far below rounding, whatever the points are (quadrature_choice.h).
 // All functions below belong to that one discrete functional, a cubic in the points, so an edit
 // that keeps it keeps it to rounding whatever the quadrature error is.
 //
@@ -27,7 +28,7 @@
 //                    of the support s
 //  (6) gradient:     V(p + t d) - V(p) == t <gradient(p), d> + O(t^2), on open models too
 //  (7) knots:        inserting knots does not change V
-//  (8) bound:        |value - exact volume| <= bound, proven for polynomial patches
+//  (8) bound:        |value - exact volume| <= bound, proven
 // Not a law: V >= 0. The sign follows the orientation. Not a law on open models: (1) and (2).
 #pragma once
 
@@ -37,6 +38,7 @@
 
 #include "isochor/base/vec3.h"
 #include "isochor/bspline/patch_model.h"
+#include "isochor/volume/bounded.h"
 #include "isochor/volume/contraction.h"
 
 namespace isochor {
@@ -56,12 +58,6 @@ struct Support {
   std::vector<int> points;        // ascending, without repeats
   std::vector<int> row_of;        // per point of the table: its place in `points`, or -1
   std::vector<Element> elements;  // those on which a function of these points lives; in order
-};
-
-// A number and how far it may be from what it stands for.
-struct Bounded {
-  double value = 0.0;
-  double bound = 0.0;
 };
 
 // V(p + s d) - V(p) = linear s + quadratic s^2 + cubic s^3.
@@ -107,16 +103,14 @@ class VolumeForm {
   double change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                 const Support& support) const;
 
-  // The same with bounds. Polynomial patches: a proven bound on the distance to the exact volume
-  // (change) of these very points. Patches with weights: a rounding bound (not proven in all its
-  // constants) plus twice the distance to the next finer rule, an estimate of the quadrature error
-  // that is reliable because convergence is geometric. Cost: twice that of the value; with weights,
-  // four times.
+  // The same with a proven bound on the distance to the exact volume (change) of these very points:
+  // rounding and, for patches with weights, quadrature. Cost: twice that of the value. Neighbouring
+  // weights beyond 1 : 1e5 may make the bound uselessly large, but not wrong.
   Bounded bounded_value(const std::vector<Vec3>& points) const;
   Bounded bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                          const Support& support) const;
 
-  // Gauss points per span of a patch, (u, v).
+  // Gauss points of the span of a patch that has most of them, (u, v).
   std::pair<int, int> gauss_points(int patch) const;
 
  private:
