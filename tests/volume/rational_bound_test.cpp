@@ -69,7 +69,7 @@ TEST(RationalBound, FiftyDigits) {
 TEST(RationalBound, RandomWeightsOfAllRatiosAndDegrees) {
   std::mt19937 random(512);
   Worst part("error_over_bound", 1.0);
-  Worst relative("bound_over_size", 2e-11);
+  Worst relative("bound_over_size", 1e-11);
   std::vector<double> pessimism;
   for (double ratio : {1.5, 3.0, 10.0, 100.0}) {
     for (const auto& [du, dv] :
@@ -96,7 +96,7 @@ TEST(RationalBound, ManySpansWithMultipleKnotsAndUnclampedOnes) {
     const Bounded computed = VolumeForm(model).bounded_value(model.points);
     const double error = error_of(computed, fine_volume<long double>(model.surface(0), 20, 4));
     EXPECT_LE(error, computed.bound) << ratio;
-    EXPECT_LT(computed.bound, 1e-10);
+    EXPECT_LT(computed.bound, 1e-11);
   }
 }
 
@@ -116,7 +116,7 @@ TEST(RationalBound, HoldsAfterMovesOfAnySize) {
       EXPECT_LE(error_of(value, moved), value.bound) << ratio << ' ' << size;
       const Bounded change = form.bounded_change(before, model.points, form.whole());
       EXPECT_LE(error_of(change, moved - at_rest), change.bound) << ratio << ' ' << size;
-      EXPECT_LT(change.bound, 3e-11 * std::max(size, size * size * size));
+      EXPECT_LT(change.bound, 1e-11 * std::max(size, size * size * size));
       model.points = before;
     }
   }

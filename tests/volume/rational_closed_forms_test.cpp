@@ -26,7 +26,7 @@ void expect_volume(const PatchModel& model, double expected) {
   EXPECT_NEAR(computed.value, expected, 4e-15 * std::abs(expected));
   // The closed form is rounded, and so are the poles and weights (1 / sqrt 2).
   EXPECT_LE(std::abs(computed.value - expected), computed.bound + 4e-15 * std::abs(expected));
-  EXPECT_LT(computed.bound, 1e-10 * std::abs(expected));
+  EXPECT_LT(computed.bound, 2e-12 * std::abs(expected));
 }
 
 TEST(RationalClosedForms, TorusConeAndFrustum) {

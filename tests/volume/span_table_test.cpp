@@ -65,6 +65,10 @@ TEST(SpanTable, AccuracyAgainstExactPolynomials) {
             EXPECT_LE(roundoffs(table.values(s, j)[g], value, table.values(s, j)[g]), allowed);
             EXPECT_LE(roundoffs(table.slopes(s, j)[g], slope, size), allowed);
             EXPECT_LE(std::abs(table.slopes(s, j)[g]), size);
+            // A slope is the step before it less its own.
+            const Rational before(j > 0 ? table.steps(s, j - 1)[g] : 0.0);
+            const Rational own(j < degree ? table.steps(s, j)[g] : 0.0);
+            EXPECT_LE((before - own - slope).abs().to_double(), allowed * kUnitRoundoff * size);
           }
         }
       }

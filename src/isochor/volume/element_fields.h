@@ -28,6 +28,18 @@ struct PatchForm {
   bool rational() const { return !weights.empty(); }
 };
 
+// Roundings, counted in unit roundoffs (docs/volume.md, "Rounding").
+struct Roundoffs {
+  explicit Roundoffs(const PatchForm& patch);
+  double tables;       // of one table of each direction
+  double coefficient;  // of a coefficient, relative to itself
+  double denominator;  // of W and its slopes, relative to their majorants
+  double numerator;    // of a function and its slopes before the quotient
+  double value;        // of a function
+  double slope;        // of its slopes
+  double drift;        // how many times as much the term W' x of a slope counts
+};
+
 // PreconditionError when the patch's points or weights do not fit its knots, or an index is not in
 // a table of `point_count` points.
 void require_poles(const Patch& patch, size_t point_count);
@@ -37,7 +49,8 @@ using VectorGrid = std::array<Grid, 3>;  // one grid for each coordinate
 // A workspace for the elements of one patch: `place` it on an element, then evaluate or scatter.
 class ElementFields {
  public:
-  // `sizes`: majorants instead of functions, see ElementKernel.
+  // `sizes`: majorants instead of functions. |computed - exact| <= Roundoffs::value (slope) * u
+  // times those, for functions whose coefficients are one difference away from exact numbers.
   explicit ElementFields(const PatchForm& patch, bool sizes = false);
 
   void place(int su, int sv);
@@ -60,13 +73,15 @@ class ElementFields {
   // Coordinate `axis` of the function with coefficients vectors[point] - origin.
   void evaluate(const std::vector<Vec3>& vectors, int axis, double origin, Grid& out);
   // For each block entry k: sum over Gauss points of a.value R_k + a.du dR_k/du + a.dv dR_k/dv.
-  // `a` is overwritten.
+  // `a` is overwritten. Not for majorants.
   const std::vector<double>& project(Grid& a);
 
  private:
   double weight(size_t k) const {
     return patch_->rational() ? patch_->weights[grid_index_[k]] : 1.0;
   }
+  // From signed_ to block_; `roundoffs`: of each coefficient, for majorants.
+  void prepare(double roundoffs);
   void divide(Grid& grid) const;
 
   const PatchForm* patch_;
@@ -74,7 +89,9 @@ class ElementFields {
   bool sizes_;
   int su_ = 0, sv_ = 0;
   std::vector<size_t> grid_index_;
-  std::vector<double> quadrature_, block_;
+  Roundoffs roundoffs_;
+  std::vector<double> quadrature_, transposed_;
+  Coefficients block_;
   Grid denominator_;
 };
 

@@ -4,9 +4,38 @@
 #include <cmath>
 
 #include "isochor/base/tolerance.h"
+#include "isochor/volume/compensated_sum.h"
 
 namespace isochor::internal {
 namespace {
+
+// A sum of many terms: short plain sums, added with compensation. Its error does not grow with the
+// number of Gauss points.
+class ChunkedSum {
+ public:
+  static constexpr int kChunk = 16;
+  // A plain sum of kChunk terms, two for the compensated sum of those.
+  static constexpr double kRoundoffs = kChunk + 2.0;
+
+  void add(double term) {
+    chunk_ += term;
+    if (++count_ < kChunk) return;
+    sum_.add(chunk_);
+    chunk_ = 0.0;
+    count_ = 0;
+  }
+  double total() {
+    sum_.add(chunk_);
+    chunk_ = 0.0;
+    count_ = 0;
+    return sum_.total();
+  }
+
+ private:
+  CompensatedSum sum_;
+  double chunk_ = 0.0;
+  int count_ = 0;
+};
 
 // x_u y_v - x_v y_u at Gauss point g; `minus` is -1, or +1 for majorants.
 double jacobian(const Grid& x, const Grid& y, size_t g, double minus) {
@@ -48,38 +77,29 @@ void evaluate_directions(ElementFields& fields, const std::vector<Vec3>& directi
 
 double element_value(const ElementFields& fields, const VectorGrid& p) {
   const double minus = minus_of(fields);
-  double sum = 0.0;
-  // Rows first: the error of summation grows with nu + nv, not with their product.
-  for (size_t g = 0; g < fields.grid_size();) {
-    double row = 0.0;
-    for (const size_t end = g + fields.row_length(); g < end; ++g) {
-      row += fields.weights()[g] * p[2].value[g] * jacobian(p[0], p[1], g, minus);
-    }
-    sum += row;
+  ChunkedSum sum;
+  for (size_t g = 0; g < fields.grid_size(); ++g) {
+    sum.add(fields.weights()[g] * p[2].value[g] * jacobian(p[0], p[1], g, minus));
   }
-  return sum;
+  return sum.total();
 }
 
 std::array<double, 3> element_line(const ElementFields& fields, const VectorGrid& p,
                                    const VectorGrid& d) {
   const double minus = minus_of(fields);
-  std::array<double, 3> sum{};
-  for (size_t g = 0; g < fields.grid_size();) {
-    std::array<double, 3> row{};
-    for (const size_t end = g + fields.row_length(); g < end; ++g) {
-      const double w = fields.weights()[g];
-      const double z = p[2].value[g];
-      const double dz = d[2].value[g];
-      const double j0 = jacobian(p[0], p[1], g, minus);
-      const double j1 = jacobian(d[0], p[1], g, minus) + jacobian(p[0], d[1], g, minus);
-      const double j2 = jacobian(d[0], d[1], g, minus);
-      row[0] += w * (dz * j0 + z * j1);
-      row[1] += w * (dz * j1 + z * j2);
-      row[2] += w * (dz * j2);
-    }
-    for (size_t k = 0; k < 3; ++k) sum[k] += row[k];
+  std::array<ChunkedSum, 3> sums;
+  for (size_t g = 0; g < fields.grid_size(); ++g) {
+    const double w = fields.weights()[g];
+    const double z = p[2].value[g];
+    const double dz = d[2].value[g];
+    const double j0 = jacobian(p[0], p[1], g, minus);
+    const double j1 = jacobian(d[0], p[1], g, minus) + jacobian(p[0], d[1], g, minus);
+    const double j2 = jacobian(d[0], d[1], g, minus);
+    sums[0].add(w * (dz * j0 + z * j1));
+    sums[1].add(w * (dz * j1 + z * j2));
+    sums[2].add(w * (dz * j2));
   }
-  return sum;
+  return {sums[0].total(), sums[1].total(), sums[2].total()};
 }
 
 void gradient_integrands(const ElementFields& fields, const VectorGrid& p, VectorGrid& out) {
@@ -118,20 +138,11 @@ double change_remainder(const ElementFields& fields, const std::vector<Vec3>& po
 }
 
 double rounding_factor(const PatchForm& patch) {
-  const int degrees = patch.u->degree() + patch.v->degree();
-  const int sums = patch.u->gauss_points() + patch.v->gauss_points();
-  const double tables = table_roundoffs(patch.u->degree()) + table_roundoffs(patch.v->degree());
-  // W and its slopes: tables, and d + 2 for the contraction a direction. Numerators also: shift,
-  // displacement, weight.
-  const double denominator = tables + degrees + 4.0;
-  const double numerator = denominator + 3.0;
-  // A quotient N / W: both, the inverse and the product. A slope (N' - W' (N / W)) / W: W' and the
-  // quotient and their product, the difference, then the inverse and the product.
-  const double quotient = numerator + denominator + 2.0;
-  const double slope = denominator + quotient + 2.0 + denominator + 2.0;
-  const double functions = patch.rational() ? quotient + 2.0 * slope : 3.0 * numerator;
-  // The products of the integrand, the rule's weights and the sum.
-  const double count = functions + 14.0 + tables + sums;
+  const Roundoffs roundoffs(patch);
+  // The three functions, the products of the integrand and its sums over terms, the weights of the
+  // rule, and the sum over points.
+  const double count = roundoffs.value + 2.0 * roundoffs.slope + 10.0 + 1.0 + roundoffs.tables +
+                       ChunkedSum::kRoundoffs;
   // Second-order terms and the rounding of the majorant itself: far below one percent.
   return 1.01 * count * kUnitRoundoff;
 }

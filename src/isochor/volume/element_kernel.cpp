@@ -18,39 +18,57 @@ inline double dot(int count, const double* x, const double* y) {
 
 }  // namespace
 
-ElementKernel::ElementKernel(const SpanTable& u, const SpanTable& v, bool sizes)
+ElementKernel::ElementKernel(const SpanTable& u, const SpanTable& v)
     : u_(&u),
       v_(&v),
-      sizes_(sizes),
       rows_(static_cast<size_t>(u.degree() + 1) * v.gauss_points()),
-      row_slopes_(rows_.size()) {}
+      row_slopes_(rows_.size()),
+      row_steps_(rows_.size()) {}
 
-void ElementKernel::evaluate(int su, int sv, const std::vector<double>& block, Grid& out) {
+void ElementKernel::difference(Coefficients& block) const {
+  const auto columns = static_cast<size_t>(v_->degree()) + 1;
+  block.u_step.resize(block.value.size() - columns);
+  for (size_t k = 0; k < block.u_step.size(); ++k) {
+    block.u_step[k] = block.value[k + columns] - block.value[k];
+  }
+  block.v_step.clear();
+  for (size_t k = 0; k < block.value.size(); ++k) {
+    if ((k + 1) % columns != 0) block.v_step.push_back(block.value[k + 1] - block.value[k]);
+  }
+}
+
+void ElementKernel::evaluate(int su, int sv, const Coefficients& block, Grid& out) {
   const int nv = v_->gauss_points(sv);
-  const int columns = v_->degree() + 1;
+  const int e = v_->degree();
+  const int d = u_->degree();
   std::fill(rows_.begin(), rows_.end(), 0.0);
   std::fill(row_slopes_.begin(), row_slopes_.end(), 0.0);
-  for (int i = 0; i <= u_->degree(); ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const double c = block[static_cast<size_t>(i) * columns + j];
-      add_scaled(nv, c, v_->values(sv, j), &rows_[static_cast<size_t>(i) * nv]);
-      add_scaled(nv, c, slopes(*v_, sv, j), &row_slopes_[static_cast<size_t>(i) * nv]);
+  std::fill(row_steps_.begin(), row_steps_.end(), 0.0);
+  for (int i = 0; i <= d; ++i) {
+    const size_t row = static_cast<size_t>(i) * nv;
+    for (int j = 0; j <= e; ++j) {
+      const size_t k = static_cast<size_t>(i) * (e + 1) + j;
+      add_scaled(nv, block.value[k], v_->values(sv, j), &rows_[row]);
+      if (i < d) add_scaled(nv, block.u_step[k], v_->values(sv, j), &row_steps_[row]);
+    }
+    for (int j = 0; j < e; ++j) {
+      const size_t k = static_cast<size_t>(i) * e + j;
+      add_scaled(nv, block.v_step[k], v_->steps(sv, j), &row_slopes_[row]);
     }
   }
   out.resize(grid_size(su, sv));
   std::fill(out.value.begin(), out.value.end(), 0.0);
   std::fill(out.du.begin(), out.du.end(), 0.0);
   std::fill(out.dv.begin(), out.dv.end(), 0.0);
-  for (int i = 0; i <= u_->degree(); ++i) {
-    const double* row = &rows_[static_cast<size_t>(i) * nv];
-    const double* row_slope = &row_slopes_[static_cast<size_t>(i) * nv];
+  for (int i = 0; i <= d; ++i) {
+    const size_t row = static_cast<size_t>(i) * nv;
     const double* b = u_->values(su, i);
-    const double* db = slopes(*u_, su, i);
+    const double* step = i < d ? u_->steps(su, i) : nullptr;
     for (int g = 0; g < u_->gauss_points(su); ++g) {
       const size_t start = static_cast<size_t>(g) * nv;
-      add_scaled(nv, b[g], row, &out.value[start]);
-      add_scaled(nv, db[g], row, &out.du[start]);
-      add_scaled(nv, b[g], row_slope, &out.dv[start]);
+      add_scaled(nv, b[g], &rows_[row], &out.value[start]);
+      add_scaled(nv, b[g], &row_slopes_[row], &out.dv[start]);
+      if (i < d) add_scaled(nv, step[g], &row_steps_[row], &out.du[start]);
     }
   }
 }
@@ -64,7 +82,7 @@ void ElementKernel::accumulate(int su, int sv, const Grid& a, std::vector<double
     double* row = &rows_[static_cast<size_t>(i) * nv];
     double* row_slope = &row_slopes_[static_cast<size_t>(i) * nv];
     const double* b = u_->values(su, i);
-    const double* db = slopes(*u_, su, i);
+    const double* db = u_->slopes(su, i);
     for (int g = 0; g < u_->gauss_points(su); ++g) {
       const size_t start = static_cast<size_t>(g) * nv;
       add_scaled(nv, b[g], &a.value[start], row);
@@ -73,7 +91,7 @@ void ElementKernel::accumulate(int su, int sv, const Grid& a, std::vector<double
     }
     for (int j = 0; j < columns; ++j) {
       block[static_cast<size_t>(i) * columns + j] +=
-          dot(nv, v_->values(sv, j), row) + dot(nv, slopes(*v_, sv, j), row_slope);
+          dot(nv, v_->values(sv, j), row) + dot(nv, v_->slopes(sv, j), row_slope);
     }
   }
 }

@@ -44,6 +44,7 @@ SpanTable::SpanTable(KnotVector knots, std::vector<SpanCells> cells)
   values_.resize(count);
   slopes_.resize(count);
   slope_sizes_.resize(count);
+  steps_.resize(start_.back() * static_cast<size_t>(degree()));
   std::map<int, LongGaussRule> rules;
   for (int s = 0; s < spans(); ++s) {
     size_t offset = 0;
@@ -94,6 +95,7 @@ void SpanTable::tabulate(int s, const Cell& cell, const LongGaussRule& rule, siz
       const long double right_term = j < d ? slope[ji + 1] : 0.0L;
       slopes_[at(s, j) + gi] = static_cast<double>(slope[ji] - right_term);
       slope_sizes_[at(s, j) + gi] = static_cast<double>(slope[ji] + right_term);
+      if (j < d) steps_[step_at(s, j) + gi] = static_cast<double>(right_term);
     }
   }
 }

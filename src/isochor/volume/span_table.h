@@ -57,12 +57,19 @@ class SpanTable {
   const double* weights(int s) const { return &weights_[start_[static_cast<size_t>(s)]]; }
   const double* values(int s, int j) const { return &values_[at(s, j)]; }
   const double* slopes(int s, int j) const { return &slopes_[at(s, j)]; }
-  // A slope is the difference of two positive terms; this is their sum.
+  // Slopes on differences: f' = sum over j < d of (c_{j+1} - c_j) steps_j, all steps non-negative
+  // and as accurate as values.
+  const double* steps(int s, int j) const { return &steps_[step_at(s, j)]; }
+  // A slope is the difference of two steps; this is their sum.
   const double* slope_sizes(int s, int j) const { return &slope_sizes_[at(s, j)]; }
 
  private:
   size_t at(int s, int j) const {
     return start_[static_cast<size_t>(s)] * static_cast<size_t>(degree() + 1) +
+           static_cast<size_t>(j) * static_cast<size_t>(gauss_points(s));
+  }
+  size_t step_at(int s, int j) const {
+    return start_[static_cast<size_t>(s)] * static_cast<size_t>(degree()) +
            static_cast<size_t>(j) * static_cast<size_t>(gauss_points(s));
   }
   void tabulate(int s, const Cell& cell, const LongGaussRule& rule, size_t offset);
@@ -71,7 +78,7 @@ class SpanTable {
   std::vector<SpanCells> cells_;
   std::vector<size_t> start_;  // per span: its first point among those of all spans; one more
   int most_points_ = 0;
-  std::vector<double> weights_, values_, slopes_, slope_sizes_;
+  std::vector<double> weights_, values_, slopes_, slope_sizes_, steps_;
 };
 
 // Law (2): one for the last rounding, and what the recursion adds in long double: 11 a level and
