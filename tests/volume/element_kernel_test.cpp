@@ -2,15 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <numeric>
 #include <random>
 
+#include "isochor/base/tolerance.h"
 #include "isochor/volume/element_fields.h"
 #include "isochor/volume/element_integrals.h"
 #include "isochor/volume/quadrature_choice.h"
+#include "support/fine_quadrature.h"
 #include "support/models.h"
 #include "support/splines.h"
+#include "support/worst.h"
 
 namespace isochor::internal {
 namespace {
@@ -146,6 +150,74 @@ TEST(ElementFields, SizesDominate) {
       const auto line = element_line(plain, p, d);
       const auto big_line = element_line(sizes, big_p, big_d);
       for (size_t k = 0; k < 3; ++k) EXPECT_LE(std::abs(line[k]), big_line[k]);
+    }
+  }
+}
+
+// The counted roundings hold at every Gauss point: functions and slopes against fifty digits, far
+// from the origin too.
+TEST(ElementFields, RoundoffsHoldAgainstFiftyDigits) {
+  using Fifty = boost::multiprecision::cpp_bin_float_50;
+  std::mt19937 random(409);
+  testing::Worst value_part("value_over_roundoffs", 1.0);
+  testing::Worst slope_part("slope_over_roundoffs", 1.0);
+  const int count = 2;
+  SpanCells eighths;
+  for (int k = 0; k < 8; ++k) eighths.push_back({k / 8.0, (k + 1) / 8.0, count});
+  for (const bool rational : {false, true}) {
+    for (double far : {0.0, 100.0}) {
+      PatchForm form = random_form(random, 3, 2, rational);
+      for (auto* table : {&form.u, &form.v}) {
+        const KnotVector knots = (*table)->knots();
+        *table = std::make_shared<const SpanTable>(
+            knots, std::vector<SpanCells>(knots.spans().size(), eighths));
+      }
+      auto points = testing::random_points(random, form.points.size());
+      for (Vec3& p : points) p.x() += far;
+      const auto us = testing::fine_nodes<Fifty>(form.u->knots(), count, 0);
+      const auto vs = testing::fine_nodes<Fifty>(form.v->knots(), count, 0);
+      const Roundoffs roundoffs(form);
+      ElementFields plain(form);
+      ElementFields sizes(form, true);
+      plain.place(0, 1);
+      sizes.place(0, 1);
+      Grid grid;
+      Grid size;
+      const double origin = points[5].x();
+      plain.evaluate(points, 0, origin, grid);
+      sizes.evaluate(points, 0, origin, size);
+      for (size_t g = 0; g < plain.grid_size(); ++g) {
+        // The oracle runs through each cell the other way.
+        const auto node = [&](size_t at) { return at / count * count + count - 1 - at % count; };
+        const auto& u = us[node(g / plain.row_length())];
+        const auto& v = vs[plain.row_length() + node(g % plain.row_length())];
+        Fifty n[3] = {0, 0, 0};
+        Fifty w[3] = {0, 0, 0};
+        for (size_t i = 0; i < u.values.size(); ++i) {
+          for (size_t j = 0; j < v.values.size(); ++j) {
+            const size_t at = (u.first + i) * static_cast<size_t>(form.v_size()) + v.first + j;
+            const Fifty weight = rational ? form.weights[at] : 1.0;
+            const Fifty c = weight * (Fifty(points[at].x()) - origin);
+            const Fifty b[3] = {u.values[i] * v.values[j], u.slopes[i] * v.values[j],
+                                u.values[i] * v.slopes[j]};
+            for (int k = 0; k < 3; ++k) n[k] += c * b[k];
+            for (int k = 0; k < 3; ++k) w[k] += weight * b[k];
+          }
+        }
+        const Fifty value = n[0] / w[0];
+        const Fifty slopes[2] = {(n[1] - w[1] * value) / w[0], (n[2] - w[2] * value) / w[0]};
+        const auto part = [](double computed, const Fifty& exact, double bound) {
+          const Fifty error = abs(Fifty(computed) - exact) / bound;
+          return error.convert_to<double>();
+        };
+        const double unit = 1.01 * kUnitRoundoff;
+        EXPECT_TRUE(
+            value_part.see(part(grid.value[g], value, roundoffs.value * unit * size.value[g])));
+        EXPECT_TRUE(
+            slope_part.see(part(grid.du[g], slopes[0], roundoffs.slope * unit * size.du[g])));
+        EXPECT_TRUE(
+            slope_part.see(part(grid.dv[g], slopes[1], roundoffs.slope * unit * size.dv[g])));
+      }
     }
   }
 }

@@ -77,6 +77,45 @@ TEST(GaussRemainder, BoundsTheErrorOfEveryRule) {
   EXPECT_LT(median, 1e5);
 }
 
+TEST(GaussRemainder, BoundsTheAreaUnderACurve) {
+  // The integral of x dy along a rational Bezier curve.
+  std::mt19937 random(506);
+  for (double ratio : {1.3, 5.0, 20.0}) {
+    for (int d = 1; d <= 4; ++d) {
+      const auto weights = weights_of_ratio(random, static_cast<size_t>(d) + 1, ratio);
+      const auto poles = box_corners(random, weights.size());
+      std::vector<double> ribbon_weights;
+      std::vector<Vec3> ribbon;
+      for (size_t i = 0; i < poles.size(); ++i) {
+        for (int side = 0; side < 2; ++side) {
+          ribbon.push_back(poles[i]);
+          ribbon_weights.push_back(weights[i]);
+        }
+      }
+      const Surface curve(KnotVector::uniform(d, 1), KnotVector::uniform(1, 1), ribbon,
+                          ribbon_weights);
+      const auto area = [&](int n) {
+        double sum = 0.0;
+        for (const auto& [u, weight] : testing::fine_gauss<double>(n)) {
+          const SurfaceDerivatives at = curve.derivatives(u, 0.5, 1);
+          sum += weight * at.s.x() * at.su.y();
+        }
+        return sum;
+      };
+      const WeightNet net = net_of(KnotVector::uniform(d, 1), weights, 0);
+      ASSERT_EQ(net.columns, 1);
+      const GaussRemainder remainder(net, Integrand::kArea);
+      for (int n = 2; n <= 10; ++n) {
+        const double error = std::abs(area(n) - area(60));
+        EXPECT_LE(error, remainder.bound(n) + 1e-13) << ratio << ' ' << d << ' ' << n;
+      }
+      if (ratio <= 5.0) {
+        EXPECT_LT(remainder.bound(40), 1.0);
+      }
+    }
+  }
+}
+
 TEST(GaussRemainder, RatesAreThoseOfTheNearestZero) {
   // W = 1 + c t has its zero at t = -1/c, on the ellipse with rho = 1 + 2/c + 2 sqrt(1/c + 1/c^2).
   for (double c : {0.5, 2.0, 8.0}) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "isochor/base/tolerance.h"
 #include "isochor/volume/span_table.h"
@@ -45,37 +46,40 @@ double noise_of(const WeightNet& net) {
   return (8.0 + kMaxHalvings) * (net.rows + net.columns) * kUnitRoundoff;
 }
 
-// |Chebyshev coefficients| of W(., s_j), enlarged by their rounding: the discrete cosine sum over
-// d + 1 points, each value a sum of positive terms.
-std::vector<double> chebyshev_sizes(const WeightNet& net, int j) {
-  const int d = net.rows - 1;
-  const int count = net.rows;
-  const double pi = std::acos(-1.0);
-  std::vector<double> sizes(static_cast<size_t>(count), 0.0);
-  std::vector<double> sums(static_cast<size_t>(count), 0.0);
+// The Chebyshev points of [0, 1] and T_k at each of them.
+struct ChebyshevPoints {
+  explicit ChebyshevPoints(int points) : count(points) {
+    const double pi = std::acos(-1.0);
+    for (int g = 0; g < count; ++g) {
+      const double angle = pi * (g + 0.5) / count;
+      at.push_back(std::pow(std::cos(angle / 2), 2));
+      from_end.push_back(std::pow(std::sin(angle / 2), 2));
+      for (int k = 0; k < count; ++k) waves.push_back(std::cos(k * angle));
+    }
+  }
+  int count;
+  std::vector<double> at, from_end, waves;
+};
+
+// |Chebyshev coefficients| of W(., s_j), enlarged by their rounding (the first, reduced): the
+// discrete cosine sum over d + 1 points, each value a sum of positive terms.
+std::vector<double> chebyshev_sizes(const WeightNet& net, int j, const ChebyshevPoints& points) {
+  const auto count = static_cast<size_t>(points.count);
+  std::vector<double> sizes(count, 0.0);
+  std::vector<double> c(count);
   double top = 0.0;
-  for (int g = 0; g < count; ++g) {
-    const double angle = pi * (g + 0.5) / count;
-    const double t = std::pow(std::cos(angle / 2), 2);
-    const double rest = std::pow(std::sin(angle / 2), 2);
-    std::vector<double> c(static_cast<size_t>(count));
-    for (int i = 0; i < count; ++i) c[static_cast<size_t>(i)] = net(i, j);
-    for (int r = d; r > 0; --r) {
-      for (int i = 0; i < r; ++i) {
-        const auto k = static_cast<size_t>(i);
-        c[k] = rest * c[k] + t * c[k + 1];
-      }
+  for (size_t g = 0; g < count; ++g) {
+    for (size_t i = 0; i < count; ++i) c[i] = net(static_cast<int>(i), j);
+    for (size_t r = count - 1; r > 0; --r) {
+      for (size_t i = 0; i < r; ++i) c[i] = points.from_end[g] * c[i] + points.at[g] * c[i + 1];
     }
-    for (int k = 0; k < count; ++k) {
-      sums[static_cast<size_t>(k)] += c[0] * std::cos(k * angle);
-    }
+    for (size_t k = 0; k < count; ++k) sizes[k] += c[0] * points.waves[g * count + k];
     top = std::max(top, c[0]);
   }
-  const double rounding = 2.0 * (noise_of(net) + (16.0 * count + 16.0) * kUnitRoundoff) * top;
-  for (int k = 0; k < count; ++k) {
-    const auto ki = static_cast<size_t>(k);
-    sizes[ki] = (k == 0 ? 1.0 : 2.0) * std::abs(sums[ki]) / count + (k == 0 ? -rounding : rounding);
-  }
+  const double scale = 1.0 / points.count;
+  const double rounding = 2.0 * (noise_of(net) + 16.0 * (points.count + 1) * kUnitRoundoff) * top;
+  sizes[0] = sizes[0] * scale - rounding;
+  for (size_t k = 1; k < count; ++k) sizes[k] = 2.0 * std::abs(sizes[k]) * scale + rounding;
   return sizes;
 }
 
@@ -85,10 +89,11 @@ NetSizes sizes_of(const WeightNet& net) {
   const int e = net.columns - 1;
   const double noise = noise_of(net);
   const auto step = [&](double a, double b) { return std::abs(a - b) + noise * (a + b); };
+  const ChebyshevPoints points(net.rows);
   std::vector<double> means;
   std::vector<double> tops;
   for (int j = 0; j <= e; ++j) {
-    std::vector<double> waves = chebyshev_sizes(net, j);
+    std::vector<double> waves = chebyshev_sizes(net, j, points);
     const double mean = waves[0];
     waves.erase(waves.begin());
     for (double& wave : waves) wave /= mean;
@@ -118,13 +123,13 @@ NetSizes sizes_of(const WeightNet& net) {
 
 // The largest share by which W leaves its mean on the ellipse, over all columns.
 double drift(const NetSizes& sizes, double log_rho) {
+  std::vector<double> growth(sizes.waves[0].size());
+  for (size_t k = 0; k < growth.size(); ++k) {
+    growth[k] = std::cosh(static_cast<double>(k + 1) * log_rho);
+  }
   double most = 0.0;
   for (const std::vector<double>& waves : sizes.waves) {
-    double sum = 0.0;
-    for (size_t k = 0; k < waves.size(); ++k) {
-      sum += waves[k] * std::cosh(static_cast<double>(k + 1) * log_rho);
-    }
-    most = std::max(most, sum);
+    most = std::max(most, std::inner_product(waves.begin(), waves.end(), growth.begin(), 0.0));
   }
   return most;
 }
@@ -270,7 +275,7 @@ GaussRemainder::GaussRemainder(const WeightNet& net, Integrand integrand) {
   double low = 0.0;
   double high = kMaxLogRho;
   if (drift(sizes, high) < 1.0) low = high;
-  for (int step = 0; step < 40 && low < high; ++step) {
+  for (int step = 0; step < 24 && low < high; ++step) {
     const double middle = 0.5 * (low + high);
     (drift(sizes, middle) < 1.0 ? low : high) = middle;
   }
@@ -301,7 +306,15 @@ double GaussRemainder::bound(int n) const {
 }
 
 int GaussRemainder::points(double tolerance, int least, int most) const {
-  for (int n = least; n <= most; ++n) {
+  if (bound(least) <= tolerance) return least;
+  // Each ellipse says where its own bound gets there; `bound` decides about rounding.
+  double fewest = most + 1.0;
+  if (exact_points_ != 0) fewest = std::min(fewest, static_cast<double>(exact_points_));
+  for (const Ellipse& ellipse : ellipses_) {
+    const double count = (ellipse.log_factor - std::log(tolerance)) / (2.0 * ellipse.log_rho);
+    fewest = std::min(fewest, std::ceil(count));
+  }
+  for (int n = std::max(least, static_cast<int>(fewest)); n <= most; ++n) {
     if (bound(n) <= tolerance) return n;
   }
   return most + 1;
