@@ -7,6 +7,7 @@
 #include <cmath>
 #include <random>
 
+#include "isochor/base/error.h"
 #include "isochor/bspline/surface.h"
 #include "isochor/volume/quadrature_choice.h"
 #include "isochor/volume/span_table.h"
@@ -37,9 +38,11 @@ std::vector<Vec3> box_corners(std::mt19937& random, size_t count) {
 
 // n Gauss points in u, as good as exact in v.
 double with_points(const Surface& surface, int n) {
+  static const auto across = testing::fine_gauss<double>(40);
+  const auto along = testing::fine_gauss<double>(n);
   double sum = 0.0;
-  for (const auto& [v, v_weight] : testing::fine_gauss<double>(60)) {
-    for (const auto& [u, u_weight] : testing::fine_gauss<double>(n)) {
+  for (const auto& [v, v_weight] : across) {
+    for (const auto& [u, u_weight] : along) {
       const SurfaceDerivatives at = surface.derivatives(u, v, 1);
       sum += u_weight * v_weight * at.s.z() * (at.su.x() * at.sv.y() - at.sv.x() * at.su.y());
     }
@@ -250,6 +253,13 @@ TEST(QuadratureChoice, LeavesSpansAloneWhereWeightsAreEqual) {
     EXPECT_EQ(choice.remainder[s], 0.0);
   }
   EXPECT_EQ(choice.v[0], (SpanCells{{0.0, 1.0, exact_gauss_points(1)}}));
+}
+
+TEST(QuadratureChoice, WeightsThatAreNotPositiveAreTheCallersBug) {
+  const KnotVector knots = KnotVector::uniform(1, 1);
+  for (double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(choose_quadrature(knots, knots, {1.0, 2.0, bad, 1.0}), PreconditionError) << bad;
+  }
 }
 
 }  // namespace

@@ -1,8 +1,10 @@
 #include "isochor/volume/quadrature_choice.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
 #include "isochor/volume/gauss_remainder.h"
 
@@ -78,6 +80,9 @@ std::shared_ptr<const SpanTable> TableCache::get(const KnotVector& knots,
 
 QuadratureChoice choose_quadrature(const KnotVector& u, const KnotVector& v,
                                    const std::vector<double>& weights) {
+  const bool positive = std::all_of(weights.begin(), weights.end(),
+                                    [](double w) { return w > 0.0 && std::isfinite(w); });
+  ISOCHOR_REQUIRE(positive, weights.size());
   const size_t rows = u.spans().size();
   const size_t columns = v.spans().size();
   QuadratureChoice choice;
