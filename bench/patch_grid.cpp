@@ -7,26 +7,35 @@
 
 namespace isochor::bench {
 
+void gather_poles(const PatchModel& model, int patch, Columns& poles) {
+  const std::vector<int>& ids = model.patches[static_cast<size_t>(patch)].points;
+  for (std::vector<double>& column : poles) column.resize(ids.size());
+  for (size_t place = 0; place < ids.size(); ++place) {
+    const Vec3& p = model.points[static_cast<size_t>(ids[place])];
+    poles[0][place] = p.x();
+    poles[1][place] = p.y();
+    poles[2][place] = p.z();
+  }
+}
+
 PatchGrid patch_grid(const PatchModel& model, int patch) {
   const Patch& from = model.patches[static_cast<size_t>(patch)];
   PatchGrid grid{from.u_knots, from.v_knots, {}};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    std::vector<double>& column = grid.poles[axis];
-    column.reserve(from.points.size());
-    for (int id : from.points) {
-      column.push_back(model.points[static_cast<size_t>(id)][static_cast<int>(axis)]);
-    }
-  }
+  gather_poles(model, patch, grid.poles);
   return grid;
 }
 
-std::vector<Vec3> point_rows(const PatchModel& model, int patch, const Columns& areas) {
-  const Patch& from = model.patches[static_cast<size_t>(patch)];
-  std::vector<Vec3> rows(model.points.size(), Vec3::Zero());
-  for (size_t place = 0; place < from.points.size(); ++place) {
-    rows[static_cast<size_t>(from.points[place])] +=
-        from.sign() * Vec3(areas[0][place], areas[1][place], areas[2][place]);
+void add_rows(const Patch& patch, const Columns& areas, std::vector<Vec3>& rows) {
+  const double sign = patch.sign();
+  for (size_t place = 0; place < patch.points.size(); ++place) {
+    rows[static_cast<size_t>(patch.points[place])] +=
+        sign * Vec3(areas[0][place], areas[1][place], areas[2][place]);
   }
+}
+
+std::vector<Vec3> point_rows(const PatchModel& model, int patch, const Columns& areas) {
+  std::vector<Vec3> rows(model.points.size(), Vec3::Zero());
+  add_rows(model.patches[static_cast<size_t>(patch)], areas, rows);
   return rows;
 }
 

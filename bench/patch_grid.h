@@ -26,7 +26,11 @@ struct PatchGrid {
 
 PatchGrid patch_grid(const PatchModel& model, int patch);
 
-// One row per point of the model: `sum` over the grid places of each point.
+// Fetches the poles of a patch from the model's table; `poles` gets its size on first use.
+void gather_poles(const PatchModel& model, int patch, Columns& poles);
+// Adds the areas of a patch to the rows of its points.
+void add_rows(const Patch& patch, const Columns& areas, std::vector<Vec3>& rows);
+// One row per point of the model: the areas of one patch summed over the places of each point.
 std::vector<Vec3> point_rows(const PatchModel& model, int patch, const Columns& areas);
 
 // What a baseline does: all three columns of a_ij (or of another gradient with the same sums over

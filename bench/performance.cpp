@@ -3,6 +3,7 @@
 // usage: isochor_performance [--quick]
 //   --quick   small sizes only; the slow OpenCASCADE call at the small size only
 // Exit status: 0 measured, 1 a method gave a wrong result (nothing is printed for it), 2 usage.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -40,6 +41,7 @@ struct Row {
   int degree = 0;
   int side = 0;
   Measured fast, plain, gauss, published, published_simd;
+  double table = 0.0;  // nanoseconds per pole to fetch the poles and add the rows
 };
 
 void require_accuracy(const std::string& method, const Row& row, double error, double limit) {
@@ -74,13 +76,28 @@ Measured measure(const std::string& name, const GradientMethod& method, const Pa
   return result;
 }
 
+// What the fast contraction does besides computing, and the baselines are spared.
+double measure_table(const PatchModel& model, const Row& row, const Patience& patience) {
+  Columns columns;
+  std::vector<Vec3> rows(model.points.size());
+  const double seconds = best_cpu_seconds(
+      [&] {
+        gather_poles(model, 0, columns);
+        std::fill(rows.begin(), rows.end(), Vec3::Zero());
+        add_rows(model.patches[0], columns, rows);
+      },
+      patience);
+  return 1e9 * seconds / (static_cast<double>(row.side) * row.side);
+}
+
 Row measure_row(int degree, int side) {
-  Row row{degree, side, {}, {}, {}, {}, {}};
+  Row row{degree, side, {}, {}, {}, {}, {}, 0.0};
   const PatchModel model = wavy_torus(degree, side);
   const Reference exact = reference(model);
   const PatchGrid grid = patch_grid(model, 0);
   const Patience patience{5, side < 300 ? 0.3 : 1.0};
   row.fast = measure_fast(model, exact, row, Instructions::kBest, patience);
+  row.table = measure_table(model, row, patience);
   row.plain = measure_fast(model, exact, row, Instructions::kPlain, patience);
   row.gauss =
       measure("Gauss", *gauss_method(grid), model, exact, row, 64.0 * kEps * side, patience);
@@ -115,13 +132,14 @@ void print_head(double peak) {
 void print_contraction_table(const std::vector<Row>& rows, double peak) {
   std::printf(
       "Volume and all gradients of one patch, nanoseconds per pole, one thread.\n\n"
-      "| degree | poles | fast | fast, plain | Gauss | published | published, SIMD | Gauss / fast "
+      "| degree | poles | fast | in and out | fast, plain | Gauss | published | published, SIMD | "
+      "Gauss / fast "
       "| published / fast | published, SIMD / fast | of FMA peak |\n"
-      "|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "|---|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const Row& row : rows) {
     const double fast = row.fast.nanoseconds;
-    std::printf("| %d | %d x %d | %s | %s | %s | %s | %s | %.2f | %.1f | %.1f | %.0f %% |\n",
-                row.degree, row.side, row.side, time_text(row.fast).c_str(),
+    std::printf("| %d | %d x %d | %s | %.1f | %s | %s | %s | %s | %.2f | %.1f | %.1f | %.0f %% |\n",
+                row.degree, row.side, row.side, time_text(row.fast).c_str(), row.table,
                 time_text(row.plain).c_str(), time_text(row.gauss).c_str(),
                 time_text(row.published).c_str(), time_text(row.published_simd).c_str(),
                 row.gauss.nanoseconds / fast, row.published.nanoseconds / fast,

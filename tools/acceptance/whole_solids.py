@@ -4,7 +4,8 @@
 usage: whole_solids.py PROBE [FOLDER] [--seconds N]
 
 PROBE is the program isochor_solid_probe. FOLDER defaults to ISOCHOR_EXTRA_DATA; with neither, nothing
-runs and the exit status is 77. Every volume is computed in a process of its own, N seconds at most.
+runs and the exit status is 77. Every volume is computed in a process of its own, N seconds of its
+processor time at most (120).
 
 A solid whose faces leave gaps has a volume only up to about the gap times the area, and integrals that
 agree without gaps differ by as much. So both sides compute the same integral here, of p . n / 3 about
@@ -21,6 +22,8 @@ import argparse
 import collections
 import os
 import pathlib
+import resource
+import signal
 import subprocess
 import sys
 
@@ -42,9 +45,12 @@ class Probe:
     def run(self, *arguments):
         """Names and numbers, `faces` by number; None when it took too long; raises when it failed."""
         command = [str(self.program), *map(str, arguments)]
-        try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=self.seconds)
-        except subprocess.TimeoutExpired:
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (self.seconds, self.seconds + 1))
+
+        done = subprocess.run(command, capture_output=True, text=True, preexec_fn=limit)
+        if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
             return None
         if done.returncode != 0:
             lines = done.stderr.strip().splitlines()
@@ -164,7 +170,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("probe", type=pathlib.Path)
     parser.add_argument("folder", nargs="?", default=os.environ.get("ISOCHOR_EXTRA_DATA"))
-    parser.add_argument("--seconds", type=float, default=120.0)
+    parser.add_argument("--seconds", type=int, default=120)
     options = parser.parse_args()
     if not options.folder or not pathlib.Path(options.folder).is_dir():
         print("skipped: no folder of CAD files (ISOCHOR_EXTRA_DATA)")
