@@ -260,22 +260,23 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
 
   const VolumeForm& form = active->prepared.volume_form();
   VolumeRecord& volume = certificate.volume;
-  volume.after = volume.before + result.achieved_change;
-  volume.relative_change = result.achieved_change / scale_of(volume.before);
-  volume.bound = form.bounded_change(rest.points, after.points, form.support_of(moved)).bound /
-                 scale_of(volume.before);
+  // Of the points as they come out, rounded: more precise than what the solution aimed at.
+  const Bounded change = form.bounded_change(rest.points, after.points, form.support_of(moved));
+  volume.after = volume.before + change.value;
+  volume.relative_change = change.value / scale_of(volume.before);
+  volume.bound = change.bound / scale_of(volume.before);
   volume.total_bound = surroundings.outside_bound + patches_bound;
-  const double missed = std::abs(result.achieved_change - volume.wanted_change);
+  const double missed = std::abs(change.value - volume.wanted_change);
   volume.kept =
       !free && active->edit.method != Method::kTaylor &&
       missed <= kVolumeKept * scale_of(std::max(std::abs(volume.before), std::abs(volume.after)));
 
   active->candidate.model = std::move(after);
   if (free || active->edit.volume.kind == VolumeGoal::Kind::kKeep) {
-    active->candidate.excess = now.excess + result.achieved_change;
+    active->candidate.excess = now.excess + change.value;
   } else {
     active->candidate.reference = total() + volume.wanted_change;
-    active->candidate.excess = result.achieved_change - volume.wanted_change;
+    active->candidate.excess = change.value - volume.wanted_change;
   }
 }
 

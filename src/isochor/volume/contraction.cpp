@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
 #include "isochor/base/error.h"
 #include "isochor/base/parallel.h"
+#include "isochor/base/tolerance.h"
 #include "isochor/volume/compensated_sum.h"
 #include "isochor/volume/element_fields.h"
+#include "isochor/volume/precise_volume.h"
 #include "isochor/volume/quadrature_choice.h"
 
 namespace isochor {
@@ -149,7 +152,7 @@ std::vector<double> sorted_by_row(const TauTensor& u, double sign) {
 }  // namespace
 
 VolumeContraction::VolumeContraction(const PatchModel& model, InstructionSet set)
-    : set_(set), point_count_(model.points.size()) {
+    : set_(set), point_count_(model.points.size()), model_(model.patches) {
   internal::TableCache tables;
   std::vector<internal::PatchForm> forms;
   for (const Patch& patch : model.patches) {
@@ -338,6 +341,22 @@ double VolumeContraction::value(const std::vector<Vec3>& points, double height, 
   internal::CompensatedSum sum;
   for (double part : parts) sum.add(part);
   return sum.total();
+}
+
+Bounded VolumeContraction::bounded_value(const std::vector<Vec3>& points, double height) const {
+  const double sum = value(points, height);
+  const double zero = origin(points, height);
+  double bound = 3.0 * kUnitRoundoff * std::abs(sum);
+  for (const Patch& patch : model_) {
+    const int d = patch.u_knots.degree(), e = patch.v_knots.degree();
+    // Two tensors, two differences; the sums of the three stages; height, product and the sum over
+    // a row of a task.
+    const double steps = 2.0 + (2.0 * e + 1.0) + (4.0 * e + 3.0) +
+                         (2.0 * d * (2.0 * d + 1.0) + 1.0) + (0.25 * kStripColumns + 6.0);
+    const double factor = tau_error(d) + tau_error(e) + steps * kUnitRoundoff;
+    bound += 1.01 * factor * contraction_majorant(patch, points, zero);
+  }
+  return {sum, bound};
 }
 
 std::vector<double> VolumeContraction::gradient_column(const std::vector<Vec3>& points, int axis,

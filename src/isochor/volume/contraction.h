@@ -25,6 +25,7 @@
 #include "isochor/base/instruction_set.h"
 #include "isochor/base/vec3.h"
 #include "isochor/bspline/patch_model.h"
+#include "isochor/volume/bounded.h"
 #include "isochor/volume/contraction_kernel.h"
 #include "isochor/volume/rim.h"
 #include "isochor/volume/tau_tensor.h"
@@ -62,6 +63,10 @@ class VolumeContraction {
   std::vector<double> gradient_column(const std::vector<Vec3>& points, int axis,
                                       double height = 0.0, int threads = 1) const;
 
+  // The value with a bound of its rounding error: counted step by step (docs/volume.md,
+  // "Rounding"), so hundreds of times what happens. VolumeForm::bounded_value is sharper.
+  Bounded bounded_value(const std::vector<Vec3>& points, double height = 0.0) const;
+
   // Adds row_of[i]'s row of the gradient for each point with row_of[i] >= 0. Cost: that of the
   // smallest rectangle of each patch that holds its points among them.
   void add_gradient(const std::vector<Vec3>& points, const std::vector<int>& row_of, double height,
@@ -94,6 +99,7 @@ class VolumeContraction {
 
   InstructionSet set_;
   size_t point_count_ = 0;
+  std::vector<Patch> model_;  // the patches as they came
   std::vector<PatchTensors> patches_;
   std::vector<Task> tasks_;
   std::vector<int> shared_points_;  // per slot: the point

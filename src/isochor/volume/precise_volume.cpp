@@ -18,34 +18,39 @@ constexpr double kPreciseSteps = 0x1p21;
 // The two kinds of numbers that the sums below are made of: values, and sizes that bound them.
 struct Values {
   using Number = DoubleDouble;
-  static Number difference(double a, double b) { return DoubleDouble(a) - DoubleDouble(b); }
+  static Number difference(const Number& a, const Number& b) { return a - b; }
   static Number minor(const Number& a, const Number& d, const Number& b, const Number& c) {
     return a * d - b * c;
   }
 };
 struct Sizes {
   using Number = double;
-  static Number difference(double a, double b) { return std::abs(a - b); }
+  // Never below the size of the difference of the two numbers of which a and b are roundings.
+  static Number difference(double a, double b) {
+    return std::abs(a - b) + 4.0 * kUnitRoundoff * (std::abs(a) + std::abs(b));
+  }
   static Number minor(Number a, Number d, Number b, Number c) { return a * d + b * c; }
 };
 
-// iint B_i B_j (x_u y_v - x_v y_u) of one patch for any two of its coordinates (x, y).
+// One number per pole, u-major.
+template <typename Kind>
+using Field = std::vector<typename Kind::Number>;
+
+// iint B_i B_j (x_u y_v - x_v y_u) of a patch for functions x and y given by their poles.
 template <typename Kind>
 class Areas {
  public:
   using Number = typename Kind::Number;
 
-  Areas(const Patch& patch, const std::vector<Vec3>& points)
-      : patch_(patch), points_(points), u_(patch.u_knots), v_(patch.v_knots) {}
+  explicit Areas(const Patch& patch) : u_(patch.u_knots), v_(patch.v_knots) {}
 
-  // One number per pole, u-major.
-  std::vector<Number> column(int x, int y) const {
+  Field<Kind> operator()(const Field<Kind>& x, const Field<Kind>& y) const {
     const int n = u_.size(), m = v_.size(), d = u_.degree();
-    std::vector<Number> areas(static_cast<size_t>(n) * m, Number(0.0));
+    Field<Kind> areas(static_cast<size_t>(n) * m, Number(0.0));
     for (int k = 0; k < n; ++k) {
       const auto dx = pairs(k, x), dy = pairs(k, y);
       for (int j = std::max(0, k - d); j <= std::min(n - 2, k + d - 1); ++j) {
-        const auto met = meet(j, x, y, dx, dy);
+        const auto met = meet(row_steps(j, x), row_steps(j, y), dx, dy);
         const int low = std::max({0, k - d, j - d + 1});
         const int high = std::min({n - 1, k + d, j + d});
         for (int i = low; i <= high; ++i) {
@@ -59,17 +64,12 @@ class Areas {
   }
 
  private:
-  double pole(int i, int j, int axis) const {
-    return points_[static_cast<size_t>(patch_.point(i, j))][axis];
-  }
-
-  // D(o, i) = sum over j of tau^v_ikj (p_{row,j+1} - p_{row,j}) with k = i + o - e.
-  std::vector<Number> pairs(int row, int axis) const {
+  // D(o, i) = sum over j of tau^v_ikj (f_{row,j+1} - f_{row,j}) with k = i + o - e.
+  Field<Kind> pairs(int row, const Field<Kind>& f) const {
     const int m = v_.size(), e = v_.degree();
-    std::vector<Number> steps, sums(static_cast<size_t>(2 * e + 1) * m, Number(0.0));
-    for (int j = 0; j + 1 < m; ++j) {
-      steps.push_back(Kind::difference(pole(row, j + 1, axis), pole(row, j, axis)));
-    }
+    const Number* at = &f[static_cast<size_t>(row) * m];
+    Field<Kind> steps, sums(static_cast<size_t>(2 * e + 1) * m, Number(0.0));
+    for (int j = 0; j + 1 < m; ++j) steps.push_back(Kind::difference(at[j + 1], at[j]));
     for (int o = 0; o <= 2 * e; ++o) {
       for (int s = std::max(0, o - e); s < std::min(2 * e, o + e); ++s) {
         const Number* tau = v_.band(o, s);
@@ -82,15 +82,20 @@ class Areas {
     return sums;
   }
 
-  // T_i = sum over k of the cross product of p_{j+1,k} - p_jk with D(., i).
-  std::vector<Number> meet(int j, int x, int y, const std::vector<Number>& dx,
-                           const std::vector<Number>& dy) const {
+  // f_{j+1,k} - f_jk for all k.
+  Field<Kind> row_steps(int j, const Field<Kind>& f) const {
+    const int m = v_.size();
+    const Number* at = &f[static_cast<size_t>(j) * m];
+    Field<Kind> steps;
+    for (int k = 0; k < m; ++k) steps.push_back(Kind::difference(at[k + m], at[k]));
+    return steps;
+  }
+
+  // T_i = sum over k of fx_k Dy(k, i) - fy_k Dx(k, i).
+  Field<Kind> meet(const Field<Kind>& fx, const Field<Kind>& fy, const Field<Kind>& dx,
+                   const Field<Kind>& dy) const {
     const int m = v_.size(), e = v_.degree();
-    std::vector<Number> fx, fy, sums(static_cast<size_t>(m), Number(0.0));
-    for (int k = 0; k < m; ++k) {
-      fx.push_back(Kind::difference(pole(j + 1, k, x), pole(j, k, x)));
-      fy.push_back(Kind::difference(pole(j + 1, k, y), pole(j, k, y)));
-    }
+    Field<Kind> sums(static_cast<size_t>(m), Number(0.0));
     for (int o = 0; o <= 2 * e; ++o) {
       const int from = std::max(0, e - o), to = std::min(m, m + e - o);
       for (int i = from; i < to; ++i) {
@@ -101,10 +106,59 @@ class Areas {
     return sums;
   }
 
-  const Patch& patch_;
-  const std::vector<Vec3>& points_;
   BasicTauTensor<Number> u_, v_;
 };
+
+// One coordinate of the poles.
+template <typename Kind>
+Field<Kind> coordinate(const Patch& patch, const std::vector<Vec3>& points, int axis) {
+  Field<Kind> field;
+  for (int id : patch.points) field.push_back(points[static_cast<size_t>(id)][axis]);
+  return field;
+}
+
+// How far one coordinate of the poles moves.
+template <typename Kind>
+Field<Kind> movement(const Patch& patch, const std::vector<Vec3>& before,
+                     const std::vector<Vec3>& after, int axis) {
+  Field<Kind> field;
+  for (int id : patch.points) {
+    const auto at = static_cast<size_t>(id);
+    const typename Kind::Number from(before[at][axis]), to(after[at][axis]);
+    field.push_back(to - from);
+  }
+  return field;
+}
+
+DoubleDouble inner_product(const Field<Values>& a, const Field<Values>& b) {
+  DoubleDouble sum;
+  for (size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+// Rounded up: all terms are non-negative, of a few thousand roundings each at most, and one for
+// every term.
+double inner_size(const Field<Sizes>& a, const Field<Sizes>& b) {
+  double sum = 0.0;
+  for (size_t k = 0; k < a.size(); ++k) sum += std::abs(a[k]) * b[k];
+  return sum * (1.001 + 4.0 * kUnitRoundoff * static_cast<double>(a.size()));
+}
+
+// The change of the integral of z dx dy, expanded so that every term has a movement as a factor:
+// dz a(x', y') + z (a(dx, y') + a(x, dy)), with ' for what is after. No large volumes cancel.
+template <typename Kind, typename Product>
+typename Kind::Number expanded_change(const Patch& patch, const std::vector<Vec3>& before,
+                                      const std::vector<Vec3>& after, const Product& product) {
+  const Areas<Kind> areas(patch);
+  const Field<Kind> y_after = coordinate<Kind>(patch, after, 1);
+  const Field<Kind> z = coordinate<Kind>(patch, before, 2);
+  typename Kind::Number sum = product(movement<Kind>(patch, before, after, 2),
+                                      areas(coordinate<Kind>(patch, after, 0), y_after));
+  sum += product(z, areas(movement<Kind>(patch, before, after, 0), y_after));
+  sum += product(
+      z, areas(coordinate<Kind>(patch, before, 0), movement<Kind>(patch, before, after, 1)));
+  return sum;
+}
 
 void require_polynomial(const Patch& patch) {
   const auto& w = patch.weights;
@@ -158,6 +212,11 @@ Patch touched_part(const Patch& patch, const std::vector<Vec3>& before,
   return part;
 }
 
+// |computed - exact| <= this times the same sum over sizes.
+double precise_factor(const Patch& patch) {
+  return (kPreciseSteps + static_cast<double>(patch.points.size())) * DoubleDouble::kUnit;
+}
+
 // Sums of double-double numbers carry a relative error of their terms' sizes.
 double sum_bound(const PreciseNumber& a, const PreciseNumber& b) {
   const double size = std::abs(a.value.high()) + std::abs(b.value.high());
@@ -181,25 +240,20 @@ PreciseNumber operator-(const PreciseNumber& a, const PreciseNumber& b) {
 
 double contraction_majorant(const Patch& patch, const std::vector<Vec3>& points, double height) {
   require_polynomial(patch);
-  const std::vector<double> areas = Areas<Sizes>(patch, points).column(0, 1);
-  double sum = 0.0;
-  for (size_t k = 0; k < areas.size(); ++k) {
-    sum += std::abs(points[static_cast<size_t>(patch.points[k])].z() - height) * areas[k];
-  }
-  // All terms are non-negative: a few thousand roundings each, and one for every term.
-  return sum * (1.001 + 4.0 * kUnitRoundoff * static_cast<double>(areas.size()));
+  Field<Sizes> heights = coordinate<Sizes>(patch, points, 2);
+  for (double& z : heights) z -= height;
+  return inner_size(heights, Areas<Sizes>(patch)(coordinate<Sizes>(patch, points, 0),
+                                                 coordinate<Sizes>(patch, points, 1)));
 }
 
 PreciseNumber precise_flux(const Patch& patch, const std::vector<Vec3>& points) {
   require_polynomial(patch);
-  const std::vector<DoubleDouble> areas = Areas<Values>(patch, points).column(0, 1);
-  DoubleDouble sum;
-  for (size_t k = 0; k < areas.size(); ++k) {
-    sum += DoubleDouble(points[static_cast<size_t>(patch.points[k])].z()) * areas[k];
-  }
-  const double steps = kPreciseSteps + static_cast<double>(areas.size());
+  const DoubleDouble sum =
+      inner_product(coordinate<Values>(patch, points, 2),
+                    Areas<Values>(patch)(coordinate<Values>(patch, points, 0),
+                                         coordinate<Values>(patch, points, 1)));
   return {patch.reversed ? -sum : sum,
-          steps * DoubleDouble::kUnit * contraction_majorant(patch, points, 0.0)};
+          precise_factor(patch) * contraction_majorant(patch, points, 0.0)};
 }
 
 PreciseNumber precise_flux_change(const Patch& patch, const std::vector<Vec3>& before,
@@ -208,17 +262,19 @@ PreciseNumber precise_flux_change(const Patch& patch, const std::vector<Vec3>& b
   require_polynomial(patch);
   const Patch part = touched_part(patch, before, after);
   if (part.points.empty()) return {};
-  return precise_flux(part, after) - precise_flux(part, before);
+  const DoubleDouble sum = expanded_change<Values>(part, before, after, inner_product);
+  const double size = expanded_change<Sizes>(part, before, after, inner_size);
+  return {patch.reversed ? -sum : sum, precise_factor(part) * size};
 }
 
 std::vector<std::array<DoubleDouble, 3>> precise_areas(const Patch& patch,
                                                        const std::vector<Vec3>& points) {
   require_polynomial(patch);
-  const Areas<Values> areas(patch, points);
+  const Areas<Values> areas(patch);
   std::vector<std::array<DoubleDouble, 3>> rows(patch.points.size());
   for (size_t axis = 0; axis < 3; ++axis) {
-    const auto column =
-        areas.column(static_cast<int>((axis + 1) % 3), static_cast<int>((axis + 2) % 3));
+    const auto column = areas(coordinate<Values>(patch, points, static_cast<int>((axis + 1) % 3)),
+                              coordinate<Values>(patch, points, static_cast<int>((axis + 2) % 3)));
     for (size_t k = 0; k < rows.size(); ++k) {
       rows[k][axis] = patch.reversed ? -column[k] : column[k];
     }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
 #include "isochor/volume/compensated_sum.h"
 #include "isochor/volume/element_integrals.h"
+#include "isochor/volume/precise_volume.h"
 #include "isochor/volume/quadrature_choice.h"
 #include "isochor/volume/rim.h"
 
@@ -74,18 +76,27 @@ double local_height(const std::vector<Vec3>& points) {
 
 struct VolumeForm::Data {
   std::vector<PatchForm> patches;
-  std::vector<std::vector<Use>> uses;  // per point
-  std::vector<Element> elements;       // all of them
+  std::vector<std::vector<Use>> uses;                    // per point
+  std::vector<Element> elements;                         // all of them
+  std::vector<Element> rational;                         // those of patches with weights
+  PatchModel polynomial;                                 // the other patches
+  std::unique_ptr<const VolumeContraction> contraction;  // of the other patches
+  int threads = 1;
   double height = 0.0;
-  Rim rim;  // only when height is not zero
+  Rim rim, rational_rim;  // of all patches and of those with weights, only when height is not zero
 
   // The integral of (z - height) dx dy over each element, in order; `sizes`: its error bound.
-  std::vector<double> element_values(const std::vector<Vec3>& points, const Support& support,
-                                     bool sizes) const;
+  std::vector<double> element_values(const std::vector<Vec3>& points,
+                                     const std::vector<Element>& chosen, bool sizes) const;
   // The same for the change along a line at s = 1.
   std::vector<double> element_changes(const std::vector<Vec3>& points,
-                                      const std::vector<Vec3>& directions, const Support& support,
-                                      bool sizes) const;
+                                      const std::vector<Vec3>& directions,
+                                      const std::vector<Element>& chosen, bool sizes) const;
+  // Adds the rows of the gradient that the elements contribute.
+  void add_gradient(const std::vector<Vec3>& points, const std::vector<Element>& chosen,
+                    const std::vector<int>& row_of, std::vector<Vec3>& rows) const;
+  std::vector<Element> rational_among(const std::vector<Element>& chosen) const;
+  void find_rims(const PatchModel& model);
   void require_fits(const std::vector<Vec3>& points) const {
     ISOCHOR_REQUIRE(points.size() == uses.size(), points.size(), uses.size());
   }
@@ -111,9 +122,32 @@ std::vector<Vec3> displacements(const std::vector<Vec3>& before, const std::vect
   return moved;
 }
 
+// What patches without weights and patches with weights come to.
+Bounded sum_of(const PreciseNumber& exact, const Bounded& rational) {
+  const Bounded rounded = exact.rounded();
+  const double sum = rounded.value + rational.value;
+  // The last sums and products of the second part, and this sum: four roundings at most.
+  return {sum, 1.01 * (rounded.bound + rational.bound) +
+                   4.0 * kUnitRoundoff * (std::abs(sum) + std::abs(rational.value))};
+}
+
 }  // namespace
 
-VolumeForm::VolumeForm(const PatchModel& model) {
+void VolumeForm::Data::find_rims(const PatchModel& model) {
+  const double x_origin = model.points.front().x();
+  rim = Rim(model, patches, x_origin);
+  if (rational.empty()) return;
+  PatchModel with_weights;
+  std::vector<PatchForm> forms;
+  for (size_t q = 0; q < patches.size(); ++q) {
+    if (!patches[q].rational()) continue;
+    with_weights.patches.push_back(model.patches[q]);
+    forms.push_back(patches[q]);
+  }
+  rational_rim = Rim(with_weights, forms, x_origin);
+}
+
+VolumeForm::VolumeForm(const PatchModel& model, int threads) {
   auto data = std::make_shared<Data>();
   data->uses.resize(model.points.size());
   TableCache tables;
@@ -127,16 +161,25 @@ VolumeForm::VolumeForm(const PatchModel& model) {
       }
     }
     PatchForm form = polynomial_form(patch, tables);
-    if (form.rational()) choose_rules(form, tables);
+    if (form.rational()) {
+      choose_rules(form, tables);
+    } else {
+      data->polynomial.patches.push_back(patch);
+    }
     for (int su = 0; su < form.u->spans(); ++su) {
       for (int sv = 0; sv < form.v->spans(); ++sv) {
         data->elements.push_back({static_cast<int>(q), su, sv});
+        if (form.rational()) data->rational.push_back(data->elements.back());
       }
     }
     data->patches.push_back(std::move(form));
   }
+  data->threads = threads;
+  data->polynomial.points = model.points;
+  data->contraction = std::make_unique<const VolumeContraction>(data->polynomial);
+  data->polynomial.points.clear();
   data->height = local_height(model.points);
-  if (data->height != 0.0) data->rim = Rim(model, data->patches, model.points.front().x());
+  if (data->height != 0.0) data->find_rims(model);
   data_ = std::move(data);
 }
 
@@ -199,79 +242,114 @@ Support VolumeForm::support_of(const std::vector<int>& moved_points) const {
 }
 
 std::vector<double> VolumeForm::Data::element_values(const std::vector<Vec3>& points,
-                                                     const Support& support, bool sizes) const {
+                                                     const std::vector<Element>& chosen,
+                                                     bool sizes) const {
   require_fits(points);
   std::vector<double> values;
   VectorGrid p;
-  for_each_element(patches, support.elements, sizes,
-                   [&](const PatchForm& patch, ElementFields& fields) {
-                     evaluate_points(fields, points, height, p);
-                     const double value = element_value(fields, p);
-                     values.push_back(sizes ? rounding_factor(patch) * value +
-                                                  value_remainder(fields, points, height)
-                                            : patch.sign * value);
-                   });
+  for_each_element(patches, chosen, sizes, [&](const PatchForm& patch, ElementFields& fields) {
+    evaluate_points(fields, points, height, p);
+    const double value = element_value(fields, p);
+    values.push_back(sizes
+                         ? rounding_factor(patch) * value + value_remainder(fields, points, height)
+                         : patch.sign * value);
+  });
   return values;
 }
 
 std::vector<double> VolumeForm::Data::element_changes(const std::vector<Vec3>& points,
                                                       const std::vector<Vec3>& directions,
-                                                      const Support& support, bool sizes) const {
+                                                      const std::vector<Element>& chosen,
+                                                      bool sizes) const {
   require_fits(points);
   require_fits(directions);
   std::vector<double> values;
   VectorGrid p;
   VectorGrid d;
-  for_each_element(
-      patches, support.elements, sizes, [&](const PatchForm& patch, ElementFields& fields) {
-        evaluate_points(fields, points, height, p);
-        evaluate_directions(fields, directions, d);
-        const auto line = element_line(fields, p, d);
-        const double change = line[0] + line[1] + line[2];
-        values.push_back(sizes ? rounding_factor(patch) * change +
-                                     change_remainder(fields, points, height, directions)
-                               : patch.sign * change);
-      });
+  for_each_element(patches, chosen, sizes, [&](const PatchForm& patch, ElementFields& fields) {
+    evaluate_points(fields, points, height, p);
+    evaluate_directions(fields, directions, d);
+    const auto line = element_line(fields, p, d);
+    const double change = line[0] + line[1] + line[2];
+    values.push_back(sizes ? rounding_factor(patch) * change +
+                                 change_remainder(fields, points, height, directions)
+                           : patch.sign * change);
+  });
   return values;
 }
 
-double VolumeForm::value(const std::vector<Vec3>& points) const { return value(points, whole()); }
+void VolumeForm::Data::add_gradient(const std::vector<Vec3>& points,
+                                    const std::vector<Element>& chosen,
+                                    const std::vector<int>& row_of, std::vector<Vec3>& rows) const {
+  VectorGrid p;
+  VectorGrid integrands;
+  for_each_element(patches, chosen, false, [&](const PatchForm& patch, ElementFields& fields) {
+    evaluate_points(fields, points, height, p);
+    gradient_integrands(fields, p, integrands);
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::vector<double>& block = fields.project(integrands[static_cast<size_t>(axis)]);
+      for (size_t k = 0; k < fields.block_size(); ++k) {
+        const int row = row_of[static_cast<size_t>(fields.point(k))];
+        if (row >= 0) rows[static_cast<size_t>(row)][axis] += patch.sign * block[k];
+      }
+    }
+  });
+}
+
+std::vector<Element> VolumeForm::Data::rational_among(const std::vector<Element>& chosen) const {
+  std::vector<Element> result;
+  if (rational.empty()) return result;
+  std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(result), [&](const Element& each) {
+    return patches[static_cast<size_t>(each.patch)].rational();
+  });
+  return result;
+}
+
+double VolumeForm::value(const std::vector<Vec3>& points) const {
+  const Data& data = *data_;
+  data.require_fits(points);
+  double sum = data.contraction->value(points, data.height, data.threads);
+  sum += total(data.element_values(points, data.rational, false));
+  if (data.height != 0.0) sum += data.height * data.rim.area(points, data.rim.elements());
+  return sum;
+}
 
 ValueAndGradient VolumeForm::value_and_gradient(const std::vector<Vec3>& points) const {
-  return {value(points), gradient(points)};
+  const Data& data = *data_;
+  data.require_fits(points);
+  ValueAndGradient result = data.contraction->value_and_gradient(points, data.height, data.threads);
+  if (data.rational.empty() && data.height == 0.0) return result;
+  result.value += total(data.element_values(points, data.rational, false));
+  const std::vector<int> all = whole().row_of;
+  data.add_gradient(points, data.rational, all, result.gradient);
+  if (data.height != 0.0) {
+    const auto elements = data.rim.elements();
+    result.value += data.height * data.rim.area(points, elements);
+    data.rim.add_area_gradient(points, elements, all, data.height, result.gradient);
+  }
+  return result;
 }
 
 std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points) const {
-  return gradient(points, whole());
+  return value_and_gradient(points).gradient;
 }
 
 double VolumeForm::value(const std::vector<Vec3>& points, const Support& support) const {
-  const double local = total(data_->element_values(points, support, false));
+  const double local = total(data_->element_values(points, support.elements, false));
   if (data_->height == 0.0) return local;
   return local + data_->height * data_->rim.area(points, data_->rim.elements_of(support.row_of));
 }
 
 std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points,
                                        const Support& support) const {
-  data_->require_fits(points);
+  const Data& data = *data_;
+  data.require_fits(points);
   std::vector<Vec3> rows(support.points.size(), Vec3::Zero());
-  VectorGrid p;
-  VectorGrid integrands;
-  for_each_element(
-      data_->patches, support.elements, false, [&](const PatchForm& patch, ElementFields& fields) {
-        evaluate_points(fields, points, data_->height, p);
-        gradient_integrands(fields, p, integrands);
-        for (int axis = 0; axis < 3; ++axis) {
-          const std::vector<double>& block = fields.project(integrands[static_cast<size_t>(axis)]);
-          for (size_t k = 0; k < fields.block_size(); ++k) {
-            const int row = support.row_of[static_cast<size_t>(fields.point(k))];
-            if (row >= 0) rows[static_cast<size_t>(row)][axis] += patch.sign * block[k];
-          }
-        }
-      });
-  if (data_->height != 0.0) {
-    data_->rim.add_area_gradient(points, data_->rim.elements_of(support.row_of), support.row_of,
-                                 data_->height, rows);
+  data.contraction->add_gradient(points, support.row_of, data.height, rows);
+  data.add_gradient(points, data.rational_among(support.elements), support.row_of, rows);
+  if (data.height != 0.0) {
+    data.rim.add_area_gradient(points, data.rim.elements_of(support.row_of), support.row_of,
+                               data.height, rows);
   }
   return rows;
 }
@@ -305,34 +383,60 @@ double VolumeForm::change(const std::vector<Vec3>& before, const std::vector<Vec
 }
 
 Bounded VolumeForm::bounded_value(const std::vector<Vec3>& points) const {
-  const Support all = whole();
-  double bound = total(data_->element_values(points, all, true));
-  double sum = total(data_->element_values(points, all, false));
-  if (data_->height != 0.0) {
-    const Rim& rim = data_->rim;
+  const Data& data = *data_;
+  data.require_fits(points);
+  PreciseNumber exact;
+  for (const Patch& patch : data.polynomial.patches) exact = exact + precise_flux(patch, points);
+  if (data.rational.empty()) return exact.rounded();
+  double bound = total(data.element_values(points, data.rational, true));
+  double sum = total(data.element_values(points, data.rational, false));
+  if (data.height != 0.0) {
+    const Rim& rim = data.rational_rim;
     const double area = rim.area(points, rim.elements());
-    sum += data_->height * area;
+    sum += data.height * area;
     bound +=
-        std::abs(data_->height) * (rim.rounding_factor() * rim.area(points, rim.elements(), true) +
-                                   rim.area_remainder(points, rim.elements()));
+        std::abs(data.height) * (rim.rounding_factor() * rim.area(points, rim.elements(), true) +
+                                 rim.area_remainder(points, rim.elements()));
   }
-  // The last sums and products: three roundings of the result.
-  return {sum, bound + 3.0 * kUnitRoundoff * std::abs(sum)};
+  return sum_of(exact, {sum, bound});
 }
 
 Bounded VolumeForm::bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                                    const Support& support) const {
+  const Data& data = *data_;
+  data.require_fits(before);
+  data.require_fits(after);
+  PreciseNumber exact;
+  for (const Patch& patch : data.polynomial.patches) {
+    exact = exact + precise_flux_change(patch, before, after);
+  }
+  const std::vector<Element> rational = data.rational_among(support.elements);
+  if (rational.empty()) return exact.rounded();
   const auto moved = displacements(before, after, support);
-  double bound = total(data_->element_changes(before, moved, support, true));
-  double sum = total(data_->element_changes(before, moved, support, false));
-  if (data_->height != 0.0) {
-    const Rim& rim = data_->rim;
+  double bound = total(data.element_changes(before, moved, rational, true));
+  double sum = total(data.element_changes(before, moved, rational, false));
+  if (data.height != 0.0) {
+    const Rim& rim = data.rational_rim;
     const auto elements = rim.elements_of(support.row_of);
     const auto line = rim.area_line(before, moved, elements);
     const auto sizes = rim.area_line(before, moved, elements, true);
-    sum += data_->height * (line[0] + line[1]);
-    bound += std::abs(data_->height) * (rim.rounding_factor() * (sizes[0] + sizes[1]) +
-                                        rim.change_remainder(before, moved, elements));
+    sum += data.height * (line[0] + line[1]);
+    bound += std::abs(data.height) * (rim.rounding_factor() * (sizes[0] + sizes[1]) +
+                                      rim.change_remainder(before, moved, elements));
+  }
+  return sum_of(exact, {sum, bound});
+}
+
+Bounded VolumeForm::quadrature_value(const std::vector<Vec3>& points) const {
+  const Data& data = *data_;
+  double bound = total(data.element_values(points, data.elements, true));
+  double sum = total(data.element_values(points, data.elements, false));
+  if (data.height != 0.0) {
+    const auto elements = data.rim.elements();
+    sum += data.height * data.rim.area(points, elements);
+    bound += std::abs(data.height) *
+             (data.rim.rounding_factor() * data.rim.area(points, elements, true) +
+              data.rim.area_remainder(points, elements));
   }
   return {sum, bound + 3.0 * kUnitRoundoff * std::abs(sum)};
 }

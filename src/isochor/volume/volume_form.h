@@ -7,12 +7,13 @@
 // back the same way: row i is (dV/dx_i, dV/dy_i, dV/dz_i), summed over all patches that use point
 // i. An *element* is a rectangle of two non-empty knot spans of one patch.
 //
-// V is computed by Gauss quadrature per element. ceil(3d/2) points per direction integrate
-// polynomial patches (also those whose weights are all equal) exactly up to rounding. Patches with
-// other weights get, once, in the constructor, cells and points for which the quadrature error is
-// proven to be far below rounding, whatever the points are (quadrature_choice.h).
-// All functions below belong to that one discrete functional, a cubic in the points, so an edit
-// that keeps it keeps it to rounding whatever the quadrature error is.
+// Patches without weights (or with weights that are all equal) are integrated exactly up to
+// rounding: the value and the gradient by VolumeContraction, changes and parts by Gauss quadrature
+// per element with ceil(3d/2) points per direction. Patches with other weights get, once, in the
+// constructor, cells and points for which the quadrature error is proven to be far below rounding,
+// whatever the points are (quadrature_choice.h). All functions below belong to that one functional,
+// a cubic in the points, so an edit that keeps it keeps it to rounding whatever the quadrature
+// error is.
 //
 // Far from the origin (|middle height| > height of the model) z is measured from the middle height
 // h, and h times the projected area is added as an integral over the rim (see rim.h): nothing is
@@ -24,11 +25,10 @@
 //  (3) orientation:  reversing every patch negates V
 //  (4) linearity:    V is affine in each coordinate column, the others fixed
 //  (5) locality:     V(q) - V(p) == value(q, s) - value(p, s) when p and q differ only at the
-//  points
-//                    of the support s
+//                    points of the support s
 //  (6) gradient:     V(p + t d) - V(p) == t <gradient(p), d> + O(t^2), on open models too
 //  (7) knots:        inserting knots does not change V
-//  (8) bound:        |value - exact volume| <= bound, proven
+//  (8) bound:        |bounded_value - exact volume| <= bound, proven; so for quadrature_value
 // Not a law: V >= 0. The sign follows the orientation. Not a law on open models: (1) and (2).
 #pragma once
 
@@ -73,13 +73,13 @@ struct LineCubic {
 class VolumeForm {
  public:
   // Uses knots, weights and orientation of the model's patches; its points only to see where
-  // the model lies (for h).
-  explicit VolumeForm(const PatchModel& model);
+  // the model lies (for h). `threads`: how many value and gradient may use; no bit depends on it.
+  explicit VolumeForm(const PatchModel& model, int threads = 1);
 
   // The number of rows that point tables must have.
   int point_count() const;
 
-  // Cost of all of these: O(d^3) per element with equal degrees d (sum factorisation).
+  // Cost: O(d^2) per point of patches without weights; with weights O(d^3) per element and more.
   double value(const std::vector<Vec3>& points) const;
   ValueAndGradient value_and_gradient(const std::vector<Vec3>& points) const;
   std::vector<Vec3> gradient(const std::vector<Vec3>& points) const;
@@ -103,12 +103,17 @@ class VolumeForm {
   double change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                 const Support& support) const;
 
-  // The same with a proven bound on the distance to the exact volume (change) of these very points:
-  // rounding and, for patches with weights, quadrature. Cost: twice that of the value. Neighbouring
-  // weights beyond 1 : 1e5 may make the bound uselessly large, but not wrong.
+  // The same, more precisely, with a proven bound on the distance to the exact volume (change) of
+  // these very points. Patches without weights are summed up in twice the precision of double
+  // (precise_volume.h): the bound is about half a unit in the last place of the result. With
+  // weights: rounding counted step by step, and quadrature. Neighbouring weights beyond 1 : 1e5 may
+  // make the bound uselessly large, but not wrong. Cost: some 50 times that of the value.
   Bounded bounded_value(const std::vector<Vec3>& points) const;
   Bounded bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                          const Support& support) const;
+
+  // The value by Gauss quadrature on all patches with its proven bound: a second method.
+  Bounded quadrature_value(const std::vector<Vec3>& points) const;
 
   // Gauss points of the span of a patch that has most of them, (u, v).
   std::pair<int, int> gauss_points(int patch) const;
