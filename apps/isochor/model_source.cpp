@@ -51,7 +51,9 @@ LoadedModel from_solid(SolidModel solid, std::vector<int> converted) {
                                    std::to_string(solid.facts.multiple_edges) +
                                    " edges of more than two faces";
   }
-  const double whole_patches = VolumeForm(loaded.patches).value(loaded.patches.points);
+  // As the session measures them, so that what it starts from is the volume of the file.
+  const double whole_patches =
+      VolumeForm(loaded.patches).bounded_value(loaded.patches.points).value;
   loaded.surroundings.outside_volume = loaded.volume - whole_patches;
   loaded.surroundings.outside_bound = solid.facts.volume_bound;
   loaded.solid = std::move(solid);

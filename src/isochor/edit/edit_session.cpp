@@ -264,8 +264,10 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
   const Bounded change = form.bounded_change(rest.points, after.points, form.support_of(moved));
   volume.after = volume.before + change.value;
   volume.relative_change = change.value / scale_of(volume.before);
-  volume.bound = change.bound / scale_of(volume.before);
   volume.total_bound = surroundings.outside_bound + patches_bound;
+  // Relative to the volume before as it is recorded; the quotient is rounded.
+  volume.bound = change.bound / scale_of(volume.before) +
+                 4.0 * kUnitRoundoff * std::abs(volume.relative_change);
   const double missed = std::abs(change.value - volume.wanted_change);
   volume.kept =
       !free && active->edit.method != Method::kTaylor &&
