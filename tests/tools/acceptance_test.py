@@ -48,7 +48,7 @@ class FakeProbe:
 
 class WholeSolids(unittest.TestCase):
     OURS = {"cones": 100.0, "cones_bound": 1e-11, "spread": 1e-12, "tolerance": 1e-7, "edge_gap": 0.0,
-            "area": 100.0}
+            "area": 100.0, "open": 1e-6}
     FACES = {0: Face(60.0, 60.0, 1e-12), 1: Face(40.0, 40.0 + 1e-6, 1e-12)}
 
     def verdict(self, *answers, **changes):
@@ -78,6 +78,8 @@ class WholeSolids(unittest.TestCase):
             self.assertEqual(verdict, expected)
             self.assertEqual(len(reasons), 1)
             self.assertIn("face 2", reasons[0])
+        left_open = third(40.0, left_open=1e-6)
+        self.assertEqual(self.verdict(off, self.FACES, left_open, open=1e-9)[0], "UNEXPLAINED")
         same = {0: Face(60.0, 60.0, 1e-12)}
         self.assertEqual(self.verdict(off, same), ("UNEXPLAINED", []))
         self.assertEqual(self.verdict(off)[0], "UNEXPLAINED")

@@ -107,29 +107,6 @@ Bounded cone_volume(const std::array<ShapeIntegrals, 3>& all, size_t k, const gp
   return sum;
 }
 
-void print_ours(const TopoDS_Shape& solid) {
-  const ShapeFacts facts = internal::shape_facts(solid, false);
-  const std::array<ShapeIntegrals, 3> all = about_axes(solid);
-  std::printf(": volume %.17g\n: bound %.17g\n: area %.17g\n", all[0].volume, all[0].bound,
-              all[0].area);
-  std::printf(": tolerance %.17g\n: edge_gap %.17g\n: vertex_gap %.17g\n", facts.max_tolerance,
-              facts.max_edge_gap, facts.max_vertex_gap);
-  double least = all[0].volume, most = least;
-  for (const ShapeIntegrals& one : all) {
-    least = std::min(least, one.volume);
-    most = std::max(most, one.volume);
-  }
-  Bounded cones;
-  for (size_t k = 0; k < all[0].faces.size(); ++k) {
-    const Bounded cone = cone_volume(all, k, tip_of(solid));
-    cones.value += cone.value;
-    cones.bound += cone.bound;
-  }
-  std::printf(": spread %.17g\n: cones %.17g\n: cones_bound %.17g\n", most - least, cones.value,
-              cones.bound);
-  std::printf(": faces %zu\n", all[0].faces.size());
-}
-
 void print_faces(const TopoDS_Shape& solid, double eps) {
   const std::array<ShapeIntegrals, 3> all = about_axes(solid);
   size_t k = 0;
@@ -149,12 +126,18 @@ void print_faces(const TopoDS_Shape& solid, double eps) {
 // loop's gaps.
 class BruteForce {
  public:
-  explicit BruteForce(const TopoDS_Face& face)
+  BruteForce(const TopoDS_Face& face, const gp_Pnt& tip)
       : surface_(BRep_Tool::Surface(face)),
         loops_(internal::face_loops(face)),
         breaks_(internal::surface_breaks(surface_).u),
-        tip_(tip_of(face)),
+        tip_(tip),
         sign_(face.Orientation() == TopAbs_REVERSED ? -1.0 : 1.0) {
+    // Without a curve there is no loop to follow: the sum stays too small and decides nothing.
+    const auto lacks_a_curve = [](const internal::FaceLoop& loop) {
+      return std::any_of(loop.uses.begin(), loop.uses.end(),
+                         [](const internal::EdgeUse& use) { return use.curve.IsNull(); });
+    };
+    loops_.erase(std::remove_if(loops_.begin(), loops_.end(), lacks_a_curve), loops_.end());
     for (const internal::FaceLoop& loop : loops_) {
       for (const internal::EdgeUse& use : loop.uses) {
         low_ = std::min({low_, use.start().X(), use.finish().X()});
@@ -251,10 +234,38 @@ class BruteForce {
   internal::UnitRule rule_ = internal::unit_rule(12);
 };
 
+void print_ours(const TopoDS_Shape& solid) {
+  const ShapeFacts facts = internal::shape_facts(solid, false);
+  const std::array<ShapeIntegrals, 3> all = about_axes(solid);
+  std::printf(": volume %.17g\n: bound %.17g\n: area %.17g\n", all[0].volume, all[0].bound,
+              all[0].area);
+  std::printf(": tolerance %.17g\n: edge_gap %.17g\n: vertex_gap %.17g\n", facts.max_tolerance,
+              facts.max_edge_gap, facts.max_vertex_gap);
+  double least = all[0].volume, most = least;
+  for (const ShapeIntegrals& one : all) {
+    least = std::min(least, one.volume);
+    most = std::max(most, one.volume);
+  }
+  Bounded cones;
+  for (size_t k = 0; k < all[0].faces.size(); ++k) {
+    const Bounded cone = cone_volume(all, k, tip_of(solid));
+    cones.value += cone.value;
+    cones.bound += cone.bound;
+  }
+  std::printf(": spread %.17g\n: cones %.17g\n: cones_bound %.17g\n", most - least, cones.value,
+              cones.bound);
+  double open = 0.0;
+  for (TopExp_Explorer it(solid, TopAbs_FACE); it.More(); it.Next()) {
+    open += BruteForce(TopoDS::Face(it.Current()), tip_of(solid)).open_part();
+  }
+  std::printf(": open %.17g\n", open);
+  std::printf(": faces %zu\n", all[0].faces.size());
+}
+
 void print_third(const TopoDS_Shape& solid, int wanted, double goal) {
   TopExp_Explorer it(solid, TopAbs_FACE);
   for (int k = 0; k < wanted && it.More(); ++k) it.Next();
-  const BruteForce force(TopoDS::Face(it.Current()));
+  const BruteForce force(TopoDS::Face(it.Current()), tip_of(it.Current()));
   constexpr int kFirst = 20, kMost = 3000;
   double last = force.integral(kFirst), change = 0.0;
   for (int steps = 2 * kFirst; steps <= kMost; steps *= 2) {

@@ -130,6 +130,8 @@ def judge(probe, place, ours):
         reasons.append(why)
     if right == {"ours"}:
         open_loops = all(LEFT_OPEN in why for why in reasons)
+        if open_loops and abs(slow[-1] - volume) > 2.0 * ours["open"] + bound:
+            return "UNEXPLAINED", reasons + ["all gaps in loops are worth less"], slow
         return f"OpenCASCADE {LEFT_OPEN if open_loops else 'is wrong'}", reasons, slow
     return ("OURS" if "theirs" in right else "UNEXPLAINED"), reasons, slow
 
