@@ -30,11 +30,12 @@ std::string exact_text(const LoadedModel& loaded) {
 
 int run_volume(const VolumeOptions& options, const Common& common) {
   const LoadedModel loaded = load_model(options.model, common, {}, options.moments);
-  const bool needs_closed = !options.open || options.moments;
-  if (!loaded.surroundings.closed && needs_closed) {
-    refuse(options.model + ": the model is open (" + loaded.surroundings.why_open +
-           ") and encloses no volume; " +
-           (options.moments ? "it has no moments" : "--open prints the integral of z dx dy"));
+  const bool measured = options.moments || !options.section.empty();
+  if (!loaded.surroundings.closed && (measured || !options.open)) {
+    refuse(
+        options.model + ": the model is open (" + loaded.surroundings.why_open +
+        ") and encloses no volume; " +
+        (measured ? "it has no moments and no sections" : "--open prints the integral of z dx dy"));
     print_json(common, Value::object()
                            .set("outcome", "refused")
                            .set("reason", "open: " + loaded.surroundings.why_open));
@@ -54,6 +55,11 @@ int run_volume(const VolumeOptions& options, const Common& common) {
     moments = moments_of(loaded);
     result.set("moments", to_value(*moments));
   }
+  std::optional<Section> section;
+  if (!options.section.empty()) {
+    section = section_of(loaded, options.section);
+    result.set("section", to_value(*section));
+  }
   if (!options.gradient.empty()) {
     Value rows = Value::list();
     for (const Vec3& row : VolumeForm(loaded.patches).gradient(loaded.patches.points)) {
@@ -65,6 +71,7 @@ int run_volume(const VolumeOptions& options, const Common& common) {
   if (!gaps_text(loaded).empty()) print(common, gaps_text(loaded));
   if (options.exact) print(common, "exact: " + exact);
   if (moments) print_moments(common, *moments, loaded.patches.unit);
+  if (section) print_section(common, *section, loaded.patches.unit);
   if (!options.gradient.empty()) print(common, "gradient: " + options.gradient);
   print_json(common, result);
   return kExitDone;

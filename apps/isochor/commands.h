@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace isochor::app {
 
@@ -30,7 +31,8 @@ struct VolumeOptions {
   bool exact = false;
   bool open = false;
   bool moments = false;
-  std::string gradient;  // file to write
+  std::vector<double> section;  // NX,NY,NZ,H, or empty
+  std::string gradient;         // file to write
 };
 int run_volume(const VolumeOptions& options, const Common& common);
 

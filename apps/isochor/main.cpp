@@ -61,6 +61,11 @@ int run(int argc, char** argv) {
   sub->add_flag("--open", volume.open, "the integral of z dx dy of an open model");
   sub->add_flag("--moments", volume.moments,
                 "centroid, second moments, inertia and principal axes of a closed model");
+  sub->add_option("--section", volume.section,
+                  "area of the cross section by the plane NX x + NY y + NZ z = H")
+      ->delimiter(',')
+      ->expected(4)
+      ->option_text("NX,NY,NZ,H");
   sub->add_option("--gradient", volume.gradient, "write dV/dx, dV/dy, dV/dz of every point");
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_volume(volume, common); }; });

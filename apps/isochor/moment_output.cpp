@@ -67,4 +67,42 @@ void print_moments(const Common& common, const Moments& m, const std::string& un
   }
 }
 
+Section section_of(const LoadedModel& loaded, const std::vector<double>& plane) {
+  const Vec3 normal(plane[0], plane[1], plane[2]);
+  if (!(normal.norm() > 0.0) || !std::isfinite(normal.norm()) || !std::isfinite(plane[3])) {
+    throw InputError("", "--section", "needs a normal that is not zero, and a height: NX,NY,NZ,H");
+  }
+#ifdef ISOCHOR_WITH_OCCT
+  if (loaded.solid) {
+    for (const FaceFacts& face : loaded.solid->faces) {
+      if (face.patch >= 0 && face.trim == TrimKind::kNatural) continue;
+      throw InputError(loaded.path, face.handle,
+                       "is no whole B-spline face (" + face.surface +
+                           "); sections of solids with such faces are not available");
+    }
+  }
+#endif
+  return section(loaded.patches, normal, plane[3]);
+}
+
+Value to_value(const Section& s) {
+  return Value::object()
+      .set("normal", s.normal)
+      .set("height", s.height)
+      .set("area", s.area)
+      .set("bound", s.bound)
+      .set("centroid", std::isinf(s.centroid_bound) ? Value() : Value(s.centroid))
+      .set("centroid_bound", s.centroid_bound)
+      .set("coplanar", s.coplanar);
+}
+
+void print_section(const Common& common, const Section& s, const std::string& unit) {
+  print(common, format("section, %s^2: %.17g (error at most %.2g)", unit.c_str(), s.area, s.bound));
+  if (!std::isinf(s.centroid_bound)) {
+    print(common, format("centroid of the section (error at most %.2g): ", s.centroid_bound) +
+                      triple(s.centroid));
+  }
+  if (s.coplanar) print(common, "a face lies in the plane: the area is the limit from below");
+}
+
 }  // namespace isochor::app

@@ -1,8 +1,9 @@
-// Moments as `isochor volume --moments` prints them.
+// Moments and sections as `isochor volume --moments --section` prints them.
 #pragma once
 
 #include "isochor/io/value.h"
 #include "isochor/volume/moments.h"
+#include "isochor/volume/section.h"
 #include "model_source.h"
 
 namespace isochor::app {
@@ -13,5 +14,13 @@ Moments moments_of(const LoadedModel& loaded);
 // The value of the key "moments".
 Value to_value(const Moments& moments);
 void print_moments(const Common& common, const Moments& moments, const std::string& unit);
+
+// The section of a closed model whose faces are all whole B-spline patches. InputError when they
+// are not, or when the normal is zero.
+Section section_of(const LoadedModel& loaded, const std::vector<double>& plane);
+
+// The value of the key "section".
+Value to_value(const Section& section);
+void print_section(const Common& common, const Section& section, const std::string& unit);
 
 }  // namespace isochor::app

@@ -156,6 +156,27 @@ class Volume(Scenario):
         refusal = self.run_json("volume", model, "--moments", "--open", code=1)
         self.assertEqual(refusal["outcome"], "refused")
 
+    def test_section_of_the_unit_cube(self):
+        result = self.run_json("volume", CUBE, "--section", "1,1,1,1.5")
+        self.assertLessEqual({"volume", "bound", "exact", "section"}, set(result))
+        section = result["section"]
+        self.assertLessEqual(abs(section["area"] - 0.75 * math.sqrt(3)), section["bound"])
+        self.assertLess(section["bound"], 1e-11)
+        self.assertAlmostEqual(section["height"], 1.5 / math.sqrt(3), delta=1e-15)
+        for x in section["centroid"]:
+            self.assertAlmostEqual(x, 0.5, delta=section["centroid_bound"])
+        self.assertFalse(section["coplanar"])
+        self.assertIn("limit from below",
+                      isochor("volume", CUBE, "--section", "0,0,1,1").stdout)
+        beside = self.run_json("volume", CUBE, "--section=-1,0,0,2")["section"]
+        self.assertEqual((beside["area"], beside["centroid"]), (0, None))
+
+    def test_sections_that_are_refused(self):
+        self.expect(1, "volume", self.open_cube(), "--section", "0,0,1,0.5", says="no sections")
+        self.expect(2, "volume", CUBE, "--section", "0,0,1", says="section")
+        self.expect(3, "volume", CUBE, "--section", "0,0,0,1", says="not zero")
+        self.expect(3, "volume", HULL, "--section", "1,0,0,10", says="no whole B-spline face")
+
     def test_a_model_without_volume_has_no_centroid(self):
         model = json.loads(CUBE.read_text())
         model["points"] = [[x, y, 0] for x, y, _ in model["points"]]

@@ -15,7 +15,7 @@
 // Everything here needs a closed model (see closure in bspline/joins.h); on an open one the numbers
 // depend on c and mean nothing. Reversing every patch negates volume, second moments and inertia.
 //
-// Laws (tests of those names in tests/volume/moments_test.cpp):
+// Laws (tests in tests/volume/moments_test.cpp and moments_exact_test.cpp):
 //  (1) translation: centroid moves along, everything else stays;   (2) rotation: tensors turn
 //  along; (3) scaling: by a, a^3 for the volume, a for the centroid, a^5 for the tensors; (4)
 //  parallel axes: integrals about any origin give the same centroid and tensors; (5) closed forms:
