@@ -62,7 +62,8 @@ int run_volume(const VolumeOptions& options, const Common& common) {
   }
   if (!options.gradient.empty()) {
     Value rows = Value::list();
-    for (const Vec3& row : VolumeForm(loaded.patches).gradient(loaded.patches.points)) {
+    for (const Vec3& row :
+         VolumeForm(loaded.patches, common.threads).gradient(loaded.patches.points)) {
       rows.push(row);
     }
     write_file(options.gradient, to_json(rows, -1));

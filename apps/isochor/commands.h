@@ -15,7 +15,7 @@ struct Common {
   bool json = false;  // one JSON value on stdout, nothing else there
   bool quiet = false;
   bool verbose = false;
-  int threads = 1;  // at most; no computation uses a second one so far
+  int threads = 1;  // at most; no result depends on it
   std::string progress = "auto";
   double bridge_seconds = 300.0;  // limits of the child process that reads and writes CAD files
   double bridge_megabytes = 8192.0;

@@ -14,7 +14,7 @@ void add_common(CLI::App& app, Common& common) {
   app.add_flag("-q,--quiet", common.quiet, "print nothing but errors");
   app.add_flag("-v,--verbose", common.verbose, "also print notices of the readers");
   app.add_option("-j,--threads", common.threads,
-                 "at most N threads; this version uses one (results do not depend on it)")
+                 "at most N threads for volumes and gradients (results do not depend on it)")
       ->check(CLI::PositiveNumber);
   app.add_option("--progress", common.progress, "a bar on stderr for long work: auto or never")
       ->check(CLI::IsMember({"auto", "never"}));

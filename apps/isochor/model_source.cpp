@@ -13,7 +13,7 @@
 namespace isochor::app {
 namespace {
 
-LoadedModel load_json(const std::string& path) {
+LoadedModel load_json(const std::string& path, int threads) {
   LoadedModel loaded;
   loaded.path = path;
   loaded.patches = parse_model(read_file(path), path);
@@ -28,7 +28,7 @@ LoadedModel load_json(const std::string& path) {
       loaded.surroundings.why_open += " and " + std::to_string(sides.size() - 1) + " more";
     }
   }
-  const VolumeForm form(loaded.patches);
+  const VolumeForm form(loaded.patches, threads);
   const Bounded volume = form.bounded_value(loaded.patches.points);
   loaded.volume = volume.value;
   loaded.volume_bound = volume.bound;
@@ -151,7 +151,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
 
 LoadedModel load_model(const std::string& path, const Common& common,
                        const std::vector<std::string>& convert, bool moments) {
-  if (extension_of(path) == "isochor.json") return load_json(path);
+  if (extension_of(path) == "isochor.json") return load_json(path, common.threads);
   if (!is_cad_file(path)) {
     read_file(path);  // a missing file is the better message
     throw InputError(path, "",

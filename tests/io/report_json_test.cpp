@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "isochor/base/error.h"
+#include "isochor/base/instruction_set.h"
 
 namespace isochor {
 namespace {
@@ -48,7 +49,7 @@ TEST(Report, HasTheKeysOfTheContract) {
                           "\"energy\"",
                           "\"timings_ms\"",
                           "\"resolved\"",
-                          "\"instruction_set\"",
+                          to_string(best_instruction_set()),
                           "\"output\": \"x.step\"",
                           "\"metric\": \"coefficients\""}) {
     EXPECT_THAT(text, HasSubstr(key));

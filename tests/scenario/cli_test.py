@@ -109,6 +109,12 @@ class Volume(Scenario):
             scaled = math.fsum(row[axis] * point[axis] for row, point in zip(rows, points))
             self.assertAlmostEqual(scaled, 1, delta=1e-13)
 
+    def test_threads_change_no_digit(self):
+        one = self.run_json("volume", CUBE, "--gradient", "one.json")
+        for threads in ("2", "3"):
+            self.assertEqual(self.run_json("volume", CUBE, "--gradient", "more.json", "-j", threads), one)
+            self.assertEqual((WORK / "more.json").read_text(), (WORK / "one.json").read_text())
+
     def test_open_models_need_the_word(self):
         model = self.open_cube()
         self.expect(1, "volume", model, says="--open")

@@ -9,6 +9,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/volume/exact_volume.h"
+#include "isochor/volume/precise_volume.h"
 #include "isochor/volume/volume_form.h"
 #include "support/models.h"
 #include "support/splines.h"
@@ -325,6 +326,53 @@ TEST(Contraction, PointsOfNoPatchHaveNoGradient) {
   VolumeContraction(model).value_and_gradient(model.points, 0.0, 1, result);
   EXPECT_EQ(result.value, volume);
   EXPECT_EQ(result.gradient.back(), Vec3(0, 0, 0));
+}
+
+// The error grows with the number of poles a side at most like 4 eps m. The yardstick are the same
+// sums in twice the precision, which PreciseVolume's tests hold against rationals.
+TEST(Contraction, AThousandPolesASide) {
+  const int side = 1000;
+  const PatchModel model = wavy_sheet(3, 3, side, side);
+  const auto exact = precise_areas(model.patches[0], model.points);
+  double scale = 0.0;
+  for (const auto& row : exact) {
+    for (const DoubleDouble& entry : row) scale = std::max(scale, std::abs(entry.high()));
+  }
+  std::vector<int> inner(model.points.size(), -1);  // the others have the rim's share
+  std::vector<size_t> chosen;
+  for (int i = 1; i + 1 < side; ++i) {
+    for (int j = 1; j + 1 < side; ++j) {
+      inner[static_cast<size_t>(i * side + j)] = static_cast<int>(chosen.size());
+      chosen.push_back(static_cast<size_t>(i * side + j));
+    }
+  }
+  Worst worst("gradient_over_four_eps_m", 1.0);
+  for (InstructionSet set : {InstructionSet::kPortable, best_instruction_set()}) {
+    std::vector<Vec3> rows(chosen.size(), Vec3::Zero());
+    VolumeContraction(model, set).add_gradient(model.points, inner, 0.0, rows);
+    double error = 0.0;
+    for (size_t k = 0; k < rows.size(); ++k) {
+      for (size_t axis = 0; axis < 3; ++axis) {
+        const DoubleDouble wanted = exact[chosen[k]][axis];
+        const double entry = rows[k][static_cast<int>(axis)];
+        error = std::max(error, std::abs(to_double(DoubleDouble(entry) - wanted)));
+      }
+    }
+    EXPECT_TRUE(worst.see(error / scale / (4.0 * 0x1p-52 * side)));
+  }
+}
+
+TEST(Contraction, UnitCubeAMillionAway) {
+  Worst worst("unit_cube_a_million_away", 1e-13);
+  for (int spans : {1, 5, 20}) {
+    PatchModel model = make_cube_model(3, spans);
+    testing::translate(model, Vec3(1e6, -1e6, 1e6));
+    // The poles are rounded on the way out: by 1e-10, which moves the volume of the poles as they
+    // are now.
+    const double exact = ExactVolume(model).value(model.points).to_double();
+    EXPECT_TRUE(worst.see(std::abs(VolumeContraction(model).value(model.points) - exact)));
+    EXPECT_TRUE(worst.see(std::abs(VolumeForm(model).value(model.points) - exact)));
+  }
 }
 
 }  // namespace

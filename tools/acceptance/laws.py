@@ -3,7 +3,8 @@
 
 usage: laws.py BUILD_FOLDER
 
-    volume and gradients: Gauss against exact rational numbers, degrees 1 to 6 mixed, uneven knots;
+    volume and gradients: published, fast and Gauss against exact rational numbers, degrees 1 to 6 mixed,
+    13 x 7, 22 x 1, uneven knots, 1 to 1000 spans, 10,000 random patches; a thousand poles a side;
     the laws of the volume form; gradients against differences;
     coarse gradients: transposed knot insertion, the published knot removal, direct integration.
 
@@ -24,6 +25,18 @@ TESTS = [
     ("volume", "VolumeBound.ValueHoldsAgainstExactRationals",
      ["error_over_proven_bound", "proven_bound"]),
     ("volume", "VolumeBound.GradientsHoldAgainstExactRationals", ["gradient"]),
+    ("volume", "FourMethods.AllPairsOfDegreesUpToSix", []),
+    ("volume", "FourMethods.HighDegrees", []),
+    ("volume", "FourMethods.FromOneSpanToAThousand", []),
+    ("volume", "FourMethods.TenThousandRandomPatches",
+     ["median_pessimism_of_the_printed_bound", "median_pessimism_fast", "median_pessimism_gauss",
+      "median_pessimism_published"]),
+    ("volume", "Contraction.ExactRationals",
+     ["contraction_exact_value", "contraction_exact_gradient"]),
+    ("volume", "Contraction.AThousandPolesASide", ["gradient_over_four_eps_m"]),
+    ("volume", "Contraction.TranslationChangesNoBit", []),
+    ("volume", "Contraction.ThreadsChangeNoBit", []),
+    ("volume", "Contraction.UnitCubeAMillionAway", ["unit_cube_a_million_away"]),
     ("volume", "VolumeForm.Translation", ["translation"]),
     ("volume", "VolumeForm.LinearMap", ["linear_map"]),
     ("volume", "VolumeForm.Orientation", []),

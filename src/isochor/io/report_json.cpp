@@ -1,5 +1,6 @@
 #include "isochor/io/report_json.h"
 
+#include "isochor/base/instruction_set.h"
 #include "isochor/io/edits_json.h"
 #include "isochor/io/json_reader.h"
 
@@ -96,7 +97,8 @@ Value certificate_value(const Certificate& c) {
       .set("iterations", c.iterations)
       .set("stationarity", c.stationarity)
       .set("timings_ms", timings)
-      .set("resolved", resolved_value(c.resolved).set("instruction_set", "portable"));
+      .set("resolved",
+           resolved_value(c.resolved).set("instruction_set", to_string(best_instruction_set())));
 }
 
 Outcome overall_outcome(const std::vector<Certificate>& certificates) {

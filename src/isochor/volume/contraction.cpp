@@ -114,17 +114,17 @@ template <Columns kColumns>
 void gather(const Lanes& lanes, const int* row, const int* next_row, int axis,
             const std::vector<Vec3>& all, Pack* out) {
   const Vec3* points = all.data();
-  constexpr int C = kCoordinates<kColumns>;
+  constexpr int kIn = kCoordinates<kColumns>;
   const int first = kColumns == Columns::kAll ? 0 : (axis + 1) % 3;
   const int second = kColumns == Columns::kAll ? 1 : (axis + 2) % 3;
   const int* place = lanes.places().data();
-  for (int t = 0; t < lanes.row_length(); ++t, out += C) {
+  for (int t = 0; t < lanes.row_length(); ++t, out += kIn) {
     for (int l = 0; l < kLanes; ++l) {
       const Vec3& p = points[row[*place]];
       prefetch(&points[next_row[*place++]]);
       out[0].lane[l] = p[first];
       out[1].lane[l] = p[second];
-      if constexpr (C == 3) out[2].lane[l] = p[2];
+      if constexpr (kIn == 3) out[2].lane[l] = p[2];
     }
   }
 }
@@ -207,20 +207,20 @@ void VolumeContraction::find_targets(size_t point_count) {
 template <Columns kColumns, typename Sink>
 double VolumeContraction::contract(const Task& task, int axis, const std::vector<Vec3>& points,
                                    const Sink& sink) const {
-  constexpr int C = kCoordinates<kColumns>;
-  constexpr int G = kColumns == Columns::kAll ? 3 : 1;
+  constexpr int kIn = kCoordinates<kColumns>;
+  constexpr int kOut = kColumns == Columns::kAll ? 3 : 1;
   const PatchTensors& patch = patches_[static_cast<size_t>(task.patch)];
   const int n = patch.u.size(), m = patch.v.size(), d = patch.u.degree(), e = patch.v.degree();
   const internal::Stages stages = internal::find_stages(set_, kColumns, d, e);
   const Lanes lanes(task.columns, m, e);
-  const int width = C * lanes.row_length();
+  const int width = kIn * lanes.row_length();
   const std::vector<Pack> tau = lanes.tensor(patch.v);
 
-  Ring positions(d + 2, width), along(2 * d, width), growing(2 * d + 1, G * lanes.length());
+  Ring positions(d + 2, width), along(2 * d, width), growing(2 * d + 1, kOut * lanes.length());
   std::vector<Pack> steps(static_cast<size_t>(width)),
       unused(growing.row(0), growing.row(0) + growing.length());
   const std::vector<Pack> nothing(static_cast<size_t>(width), Pack{});
-  std::vector<Pack> pairs(static_cast<size_t>(C) * lanes.length() * (2 * e + 1));
+  std::vector<Pack> pairs(static_cast<size_t>(kIn) * lanes.length() * (2 * e + 1));
   const internal::PairsArguments along_v{e, lanes.length(), tau.data(), steps.data(), pairs.data()};
   std::vector<const Pack*> along_u(static_cast<size_t>(2) * d);
   std::vector<Pack*> rows(static_cast<size_t>(2) * d + 1);
@@ -243,8 +243,8 @@ double VolumeContraction::contract(const Task& task, int axis, const std::vector
     const size_t start = static_cast<size_t>(i) * m;
     double parts[kLanes] = {};
     lanes.for_each_column([&](int column, int t, int l) {
-      std::array<double, static_cast<size_t>(G)> entry;
-      for (int c = 0; c < G; ++c) entry[static_cast<size_t>(c)] = row[t * G + c].lane[l];
+      std::array<double, static_cast<size_t>(kOut)> entry;
+      for (int c = 0; c < kOut; ++c) entry[static_cast<size_t>(c)] = row[t * kOut + c].lane[l];
       parts[l] += sink(start + static_cast<size_t>(column), entry);
     });
     sum.add((parts[0] + parts[1]) + (parts[2] + parts[3]));
@@ -252,7 +252,7 @@ double VolumeContraction::contract(const Task& task, int axis, const std::vector
   };
   for (int k = walk.begin; k < walk.end; ++k) {
     enter_rows_until(k + d);
-    stages.subtract(positions.row(k) + C, positions.row(k), width - C, steps.data());
+    stages.subtract(positions.row(k) + kIn, positions.row(k), width - kIn, steps.data());
     stages.pairs(along_v);
     for (int a = 0; a < 2 * d; ++a) {
       const int j = k - d + a;

@@ -18,21 +18,21 @@ namespace isochor::internal {
 template <typename Lanes, Columns kColumns>
 struct StageLoops {
   using Vector = typename Lanes::Vector;
-  static constexpr int C = kColumns == Columns::kAll ? 3 : 2;
-  static constexpr int G = kColumns == Columns::kAll ? 3 : 1;
+  static constexpr int kIn = kColumns == Columns::kAll ? 3 : 2;
+  static constexpr int kOut = kColumns == Columns::kAll ? 3 : 1;
 
   // The sum over s for one offset o; returns where the numbers of the next one begin.
   [[gnu::always_inline]] static const Pack* pair(const Pack* tau, const Pack* steps, int first,
                                                  int end, Pack* out) {
-    Vector sums[C];
-    for (int c = 0; c < C; ++c) sums[c] = Lanes::zero();
+    Vector sums[kIn];
+    for (int c = 0; c < kIn; ++c) sums[c] = Lanes::zero();
     for (int s = first; s < end; ++s) {
       const Vector factor = Lanes::load(*tau++);
-      for (int c = 0; c < C; ++c) {
-        sums[c] = Lanes::add_product(factor, Lanes::load(steps[s * C + c]), sums[c]);
+      for (int c = 0; c < kIn; ++c) {
+        sums[c] = Lanes::add_product(factor, Lanes::load(steps[s * kIn + c]), sums[c]);
       }
     }
-    for (int c = 0; c < C; ++c) Lanes::store(out[c], sums[c]);
+    for (int c = 0; c < kIn; ++c) Lanes::store(out[c], sums[c]);
     return tau;
   }
 
@@ -40,7 +40,7 @@ struct StageLoops {
   template <int D, int O>
   [[gnu::always_inline]] static void all_pairs(const Pack* tau, const Pack* steps, Pack* out) {
     tau = pair(tau, steps, first_step(D, O), end_step(D, O), out);
-    if constexpr (O < 2 * D) all_pairs<D, O + 1>(tau, steps, out + C);
+    if constexpr (O < 2 * D) all_pairs<D, O + 1>(tau, steps, out + kIn);
   }
 
   template <int D>
@@ -49,13 +49,13 @@ struct StageLoops {
     const Pack* tau = p.tau;
     Pack* out = p.pairs;
     for (int t = 0; t < p.length; ++t) {
-      const Pack* steps = p.steps + t * C;
+      const Pack* steps = p.steps + t * kIn;
       if constexpr (D > 0) {
         all_pairs<D, 0>(tau, steps, out);
         tau += step_count(D);
-        out += C * (2 * D + 1);
+        out += kIn * (2 * D + 1);
       } else {
-        for (int o = 0; o <= 2 * e; ++o, out += C) {
+        for (int o = 0; o <= 2 * e; ++o, out += kIn) {
           tau = pair(tau, steps, first_step(e, o), end_step(e, o), out);
         }
       }
@@ -65,23 +65,23 @@ struct StageLoops {
   // T[a] for `Group` neighbouring a's, added to the rows that they reach.
   template <int Group>
   [[gnu::always_inline]] static void group(const RowsArguments& p, int d, int a, int t) {
-    Vector areas[Group][G];
+    Vector areas[Group][kOut];
     for (int g = 0; g < Group; ++g) {
-      for (int c = 0; c < G; ++c) areas[g][c] = Lanes::zero();
+      for (int c = 0; c < kOut; ++c) areas[g][c] = Lanes::zero();
     }
-    const Pack* pair = p.pairs + t * p.offsets * C;
+    const Pack* pair = p.pairs + t * p.offsets * kIn;
     const Pack* along[Group];
-    for (int g = 0; g < Group; ++g) along[g] = p.along_u[a + g] + t * C;
-    for (int o = 0; o < p.offsets; ++o, pair += C) {
-      Vector q[C];
-      for (int c = 0; c < C; ++c) q[c] = Lanes::load(pair[c]);
+    for (int g = 0; g < Group; ++g) along[g] = p.along_u[a + g] + t * kIn;
+    for (int o = 0; o < p.offsets; ++o, pair += kIn) {
+      Vector q[kIn];
+      for (int c = 0; c < kIn; ++c) q[c] = Lanes::load(pair[c]);
       for (int g = 0; g < Group; ++g) {
-        Vector f[C];
-        for (int c = 0; c < C; ++c) f[c] = Lanes::load_once(along[g][c]);
-        along[g] += C;
-        for (int c = 0; c < G; ++c) {
-          const int y = G == 3 ? (c + 1) % 3 : 0;
-          const int z = G == 3 ? (c + 2) % 3 : 1;
+        Vector f[kIn];
+        for (int c = 0; c < kIn; ++c) f[c] = Lanes::load_once(along[g][c]);
+        along[g] += kIn;
+        for (int c = 0; c < kOut; ++c) {
+          const int y = kOut == 3 ? (c + 1) % 3 : 0;
+          const int z = kOut == 3 ? (c + 2) % 3 : 1;
           areas[g][c] = Lanes::add_product(f[y], q[z], areas[g][c]);
           areas[g][c] = Lanes::subtract_product(f[z], q[y], areas[g][c]);
         }
@@ -91,14 +91,14 @@ struct StageLoops {
     const int first = a - d + 1 > 0 ? a - d + 1 : 0;
     const int last = a + Group - 1 < d ? a + Group - 1 + d : 2 * d;
     for (int b = first; b <= last; ++b) {
-      Pack* row = p.rows[b] + t * G;
-      Vector sums[G];
-      for (int c = 0; c < G; ++c) sums[c] = Lanes::load(row[c]);
+      Pack* row = p.rows[b] + t * kOut;
+      Vector sums[kOut];
+      for (int c = 0; c < kOut; ++c) sums[c] = Lanes::load(row[c]);
       for (int g = 0; g < Group; ++g) {
         const Vector factor = Lanes::broadcast(p.tau[(a + g) * (2 * d + 1) + b]);
-        for (int c = 0; c < G; ++c) sums[c] = Lanes::add_product(factor, areas[g][c], sums[c]);
+        for (int c = 0; c < kOut; ++c) sums[c] = Lanes::add_product(factor, areas[g][c], sums[c]);
       }
-      for (int c = 0; c < G; ++c) Lanes::store(row[c], sums[c]);
+      for (int c = 0; c < kOut; ++c) Lanes::store(row[c], sums[c]);
     }
   }
 

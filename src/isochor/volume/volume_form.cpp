@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "isochor/base/error.h"
+#include "isochor/base/parallel.h"
 #include "isochor/base/tolerance.h"
 #include "isochor/volume/compensated_sum.h"
 #include "isochor/volume/element_integrals.h"
@@ -385,8 +386,14 @@ double VolumeForm::change(const std::vector<Vec3>& before, const std::vector<Vec
 Bounded VolumeForm::bounded_value(const std::vector<Vec3>& points) const {
   const Data& data = *data_;
   data.require_fits(points);
+  const std::vector<Patch>& patches = data.polynomial.patches;
+  std::vector<PreciseNumber> parts(patches.size());
+  run_tasks(static_cast<int>(parts.size()), data.threads, [&](int q) {
+    const auto at = static_cast<size_t>(q);
+    parts[at] = precise_flux(patches[at], points);
+  });
   PreciseNumber exact;
-  for (const Patch& patch : data.polynomial.patches) exact = exact + precise_flux(patch, points);
+  for (const PreciseNumber& part : parts) exact = exact + part;
   if (data.rational.empty()) return exact.rounded();
   double bound = total(data.element_values(points, data.rational, true));
   double sum = total(data.element_values(points, data.rational, false));

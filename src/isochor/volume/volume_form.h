@@ -73,7 +73,8 @@ struct LineCubic {
 class VolumeForm {
  public:
   // Uses knots, weights and orientation of the model's patches; its points only to see where
-  // the model lies (for h). `threads`: how many value and gradient may use; no bit depends on it.
+  // the model lies (for h). `threads`: how many the functions of all points may use; no
+  // bit depends on it.
   explicit VolumeForm(const PatchModel& model, int threads = 1);
 
   // The number of rows that point tables must have.
