@@ -23,7 +23,7 @@ using internal::Pack;
 namespace {
 
 // A strip's buffers stay in the first two caches: at degree 3 about 60 kB.
-constexpr int kStripColumns = 128;
+constexpr int kStripColumns = 192;
 constexpr int kRowsOfTask = 256;
 
 IndexRange clipped(const IndexRange& range, int size) {
@@ -49,27 +49,29 @@ class Ring {
 class Lanes {
  public:
   Lanes(const IndexRange& columns, int size, int e)
-      : columns_(columns), length_((columns.count() + kLanes - 1) / kLanes), e_(e) {
-    for (int t = -e; t < length_ + e; ++t) {
-      for (int l = 0; l < kLanes; ++l) {
-        places_.push_back(std::clamp(columns.begin + l * length_ + t, 0, size - 1));
-      }
-    }
-  }
+      : columns_(columns), size_(size), length_((columns.count() + kLanes - 1) / kLanes), e_(e) {}
   int length() const { return length_; }
   // Packs of a row with its neighbours.
   int row_length() const { return length_ + 2 * e_; }
-  const std::vector<int>& places() const { return places_; }
 
-  // Visits (column, t, lane) for every column of the task.
+  // Visits (column, t) for t = 0 .. row_length() - 1 of one lane with its neighbours, t from the
+  // first neighbour on.
   template <typename Visit>
-  void for_each_column(const Visit& visit) const {
-    for (int t = 0; t < length_; ++t) {
-      for (int l = 0; l < kLanes; ++l) {
-        const int column = columns_.begin + l * length_ + t;
-        if (column < columns_.end) visit(column, t, l);
-      }
+  void for_each_neighbour(int lane, const Visit& visit) const {
+    const int first = columns_.begin + lane * length_ - e_;
+    if (first >= 0 && first + row_length() <= size_) {
+      for (int t = 0; t < row_length(); ++t) visit(first + t, t);
+    } else {
+      for (int t = 0; t < row_length(); ++t) visit(std::clamp(first + t, 0, size_ - 1), t);
     }
+  }
+
+  // Visits (column, t) for the task's own columns in one lane.
+  template <typename Visit>
+  void for_each_column(int lane, const Visit& visit) const {
+    const int first = columns_.begin + lane * length_;
+    const int count = std::min(length_, columns_.end - first);
+    for (int t = 0; t < count; ++t) visit(first + t, t);
   }
 
   // tau^v in the order in which PairsArguments wants it.
@@ -93,9 +95,9 @@ class Lanes {
 
  private:
   IndexRange columns_;
+  int size_;
   int length_;
   int e_;
-  std::vector<int> places_;
 };
 
 // Asks for memory ahead of its use: rows of large grids are far apart, which processors do not
@@ -117,15 +119,15 @@ void gather(const Lanes& lanes, const int* row, const int* next_row, int axis,
   constexpr int kIn = kCoordinates<kColumns>;
   const int first = kColumns == Columns::kAll ? 0 : (axis + 1) % 3;
   const int second = kColumns == Columns::kAll ? 1 : (axis + 2) % 3;
-  const int* place = lanes.places().data();
-  for (int t = 0; t < lanes.row_length(); ++t, out += kIn) {
-    for (int l = 0; l < kLanes; ++l) {
-      const Vec3& p = points[row[*place]];
-      prefetch(&points[next_row[*place++]]);
-      out[0].lane[l] = p[first];
-      out[1].lane[l] = p[second];
-      if constexpr (kIn == 3) out[2].lane[l] = p[2];
-    }
+  for (int l = 0; l < kLanes; ++l) {
+    lanes.for_each_neighbour(l, [&](int column, int t) {
+      const Vec3& p = points[row[column]];
+      prefetch(&points[next_row[column]]);
+      Pack* to = out + t * kIn;
+      to[0].lane[l] = p[first];
+      to[1].lane[l] = p[second];
+      if constexpr (kIn == 3) to[2].lane[l] = p[2];
+    });
   }
 }
 
@@ -242,11 +244,15 @@ double VolumeContraction::contract(const Task& task, int axis, const std::vector
     Pack* row = growing.row(i);
     const size_t start = static_cast<size_t>(i) * m;
     double parts[kLanes] = {};
-    lanes.for_each_column([&](int column, int t, int l) {
-      std::array<double, static_cast<size_t>(kOut)> entry;
-      for (int c = 0; c < kOut; ++c) entry[static_cast<size_t>(c)] = row[t * kOut + c].lane[l];
-      parts[l] += sink(start + static_cast<size_t>(column), entry);
-    });
+    for (int l = 0; l < kLanes; ++l) {
+      double part = 0.0;
+      lanes.for_each_column(l, [&](int column, int t) {
+        std::array<double, static_cast<size_t>(kOut)> entry;
+        for (int c = 0; c < kOut; ++c) entry[static_cast<size_t>(c)] = row[t * kOut + c].lane[l];
+        part += sink(start + static_cast<size_t>(column), entry);
+      });
+      parts[l] = part;
+    }
     sum.add((parts[0] + parts[1]) + (parts[2] + parts[3]));
     std::fill(row, row + growing.length(), Pack{});
   };
