@@ -29,7 +29,9 @@ std::string exact_text(const LoadedModel& loaded) {
 }  // namespace
 
 int run_volume(const VolumeOptions& options, const Common& common) {
-  const LoadedModel loaded = load_model(options.model, common, {}, options.moments);
+  if (!options.section.empty()) require_plane(options.section);
+  const LoadedModel loaded =
+      load_model(options.model, common, {}, {options.moments, options.section});
   const bool measured = options.moments || !options.section.empty();
   if (!loaded.surroundings.closed && (measured || !options.open)) {
     refuse(

@@ -122,11 +122,12 @@ namespace {
 
 // The solid with the faces named in `convert` turned into patches; `converted` gets their numbers.
 SolidModel read_converted(const std::string& path, const Common& common,
-                          const std::vector<std::string>& convert, bool moments,
+                          const std::vector<std::string>& convert, const ShapeMeasures& measures,
                           std::vector<int>& converted) {
   const BusyLine busy(common, "reading " + path);
   ReadOptions options = read_options(common);
-  options.moments = moments;
+  options.moments = measures.moments;
+  options.section = measures.section;
   SolidModel solid = read_solid(path, options);
   for (const std::string& name : convert) {
     const int face = find_face(solid, name);
@@ -150,7 +151,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
 #endif
 
 LoadedModel load_model(const std::string& path, const Common& common,
-                       const std::vector<std::string>& convert, bool moments) {
+                       const std::vector<std::string>& convert, const ShapeMeasures& measures) {
   if (extension_of(path) == "isochor.json") return load_json(path, common.threads);
   if (!is_cad_file(path)) {
     read_file(path);  // a missing file is the better message
@@ -159,13 +160,13 @@ LoadedModel load_model(const std::string& path, const Common& common,
   }
 #ifdef ISOCHOR_WITH_OCCT
   std::vector<int> converted;
-  SolidModel solid = read_converted(path, common, convert, moments, converted);
+  SolidModel solid = read_converted(path, common, convert, measures, converted);
   for (const std::string& notice : solid.notices) detail(common, path + ": " + notice);
   return from_solid(std::move(solid), std::move(converted));
 #else
   (void)common;
   (void)convert;
-  (void)moments;
+  (void)measures;
   throw InputError(path, "", "this build has no STEP, IGES and BREP support");
 #endif
 }

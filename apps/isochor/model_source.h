@@ -38,11 +38,17 @@ std::string gaps_text(const LoadedModel& loaded);
 // True for STEP, IGES and BREP by extension.
 bool is_cad_file(const std::string& path);
 
-// Reads a model. `convert`: names of faces to turn into B-spline patches when they are not;
-// `moments`: with the moment integrals of CAD files.
+// What is measured on the shape of a CAD file, beside its volume.
+struct ShapeMeasures {
+  bool moments = false;
+  std::vector<double> section;  // NX, NY, NZ, H, or empty
+};
+
+// Reads a model. `convert`: names of faces to turn into B-spline patches when they are not.
 // Throws InputError for anything that cannot be used, also for an unknown extension.
 LoadedModel load_model(const std::string& path, const Common& common,
-                       const std::vector<std::string>& convert = {}, bool moments = false);
+                       const std::vector<std::string>& convert = {},
+                       const ShapeMeasures& measures = {});
 
 #ifdef ISOCHOR_WITH_OCCT
 ReadOptions read_options(const Common& common);

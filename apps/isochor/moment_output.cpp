@@ -1,5 +1,6 @@
 #include "moment_output.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "isochor/base/error.h"
@@ -67,22 +68,24 @@ void print_moments(const Common& common, const Moments& m, const std::string& un
   }
 }
 
-Section section_of(const LoadedModel& loaded, const std::vector<double>& plane) {
+void require_plane(const std::vector<double>& plane) {
   const Vec3 normal(plane[0], plane[1], plane[2]);
   if (!(normal.norm() > 0.0) || !std::isfinite(normal.norm()) || !std::isfinite(plane[3])) {
     throw InputError("", "--section", "needs a normal that is not zero, and a height: NX,NY,NZ,H");
   }
+}
+
+Section section_of(const LoadedModel& loaded, const std::vector<double>& plane) {
 #ifdef ISOCHOR_WITH_OCCT
   if (loaded.solid) {
-    for (const FaceFacts& face : loaded.solid->faces) {
-      if (face.patch >= 0 && face.trim == TrimKind::kNatural) continue;
-      throw InputError(loaded.path, face.handle,
-                       "is no whole B-spline face (" + face.surface +
-                           "); sections of solids with such faces are not available");
-    }
+    const auto& faces = loaded.solid->faces;
+    const bool whole_patches = std::all_of(faces.begin(), faces.end(), [](const FaceFacts& face) {
+      return face.patch >= 0 && face.trim == TrimKind::kNatural;
+    });
+    if (!whole_patches && loaded.solid->section) return *loaded.solid->section;
   }
 #endif
-  return section(loaded.patches, normal, plane[3]);
+  return section(loaded.patches, Vec3(plane[0], plane[1], plane[2]), plane[3]);
 }
 
 Value to_value(const Section& s) {

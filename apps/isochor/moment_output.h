@@ -15,8 +15,10 @@ Moments moments_of(const LoadedModel& loaded);
 Value to_value(const Moments& moments);
 void print_moments(const Common& common, const Moments& moments, const std::string& unit);
 
-// The section of a closed model whose faces are all whole B-spline patches. InputError when they
-// are not, or when the normal is zero.
+// InputError unless the four numbers are a plane.
+void require_plane(const std::vector<double>& plane);
+// The section of a closed model by this plane: of its patches where they are the whole model, else
+// as the reader of the CAD file measured it.
 Section section_of(const LoadedModel& loaded, const std::vector<double>& plane);
 
 // The value of the key "section".

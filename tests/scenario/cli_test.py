@@ -53,6 +53,14 @@ class Scenario(unittest.TestCase):
         (WORK / "open.isochor.json").write_text(json.dumps(model))
         return "open.isochor.json"
 
+    def reach(self, model):
+        """The least and the greatest x of its patches' poles."""
+        self.assertEqual(isochor("convert", model, "reach.stl").returncode, 0)
+        raw = (WORK / "reach.stl").read_bytes()
+        count = struct.unpack_from("<I", raw, 80)[0]
+        xs = [struct.unpack_from("<9f", raw, 84 + 50 * k + 12)[0::3] for k in range(count)]
+        return min(map(min, xs)), max(map(max, xs))
+
     def pulled(self):
         self.assertEqual(isochor("edit", CUBE, PULL, "-o", "pulled.isochor.json").returncode, 0)
         return "pulled.isochor.json"
@@ -181,7 +189,27 @@ class Volume(Scenario):
         self.expect(1, "volume", self.open_cube(), "--section", "0,0,1,0.5", says="no sections")
         self.expect(2, "volume", CUBE, "--section", "0,0,1", says="section")
         self.expect(3, "volume", CUBE, "--section", "0,0,0,1", says="not zero")
-        self.expect(3, "volume", HULL, "--section", "1,0,0,10", says="no whole B-spline face")
+        self.expect(3, "volume", HULL, "--section", "0,0,0,1", says="not zero")
+
+    def test_sections_of_a_hull_add_up_to_its_volume(self):
+        """Cavalieri: the integral of the areas of its stations is the volume."""
+        parts = 8
+        facts = self.run_json("volume", HULL)
+        box = [self.run_json("volume", HULL, "--section", f"1,0,0,{x}")["section"] for x in (-1e3, 1e3)]
+        for outside in box:
+            self.assertLessEqual(abs(outside["area"]), outside["bound"])
+        low, high = self.reach(HULL)
+        nodes = [-0.7745966692414834, 0.0, 0.7745966692414834]
+        weights = [5 / 9, 8 / 9, 5 / 9]
+        total = 0.0
+        for k in range(parts):
+            half = (high - low) / parts / 2
+            middle = low + (2 * k + 1) * half
+            for node, weight in zip(nodes, weights):
+                section = self.run_json("volume", HULL, f"--section=1,0,0,{middle + half * node}")["section"]
+                self.assertLess(section["bound"], 1e-6 * abs(section["area"]) + 1e-6)
+                total += half * weight * section["area"]
+        self.assertAlmostEqual(total / facts["volume"], 1.0, delta=2e-3)
 
     def test_a_model_without_volume_has_no_centroid(self):
         model = json.loads(CUBE.read_text())

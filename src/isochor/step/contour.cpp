@@ -15,10 +15,8 @@ namespace {
 
 constexpr int kCurvePoints = 10;  // per piece of a curve; halving tests it
 constexpr int kExactPoints = 48;  // exact rules up to this size
-constexpr int kMaxHalvings = 8;
-// A piece is good when halving it changes less; relative to the absolute integral of the face.
-// Where that is small (walls along z), rounding errors are the limit.
-constexpr double kConverged = 1e-15;
+// A piece is good when halving it changes less than Integrand::kConverged, relative to the absolute
+// integral of the face. Where that is small (walls along z), rounding errors are the limit.
 constexpr int kCrossingSamples = 32;
 
 // A piece of a loop: u(t), v(t) and v'(t), or a straight line.
@@ -75,10 +73,10 @@ std::vector<double> Path::breaks() const {
   return {at.begin(), at.end()};
 }
 
-// Adds the parameters where a coordinate of the path passes `levels`, between samples t0 and t1.
-void add_crossings(const Path& path, double t0, double t1, const std::vector<double>& levels,
-                   bool u, std::vector<double>& out) {
-  const auto coordinate = [&](double t) { return u ? path.value(t).X() : path.value(t).Y(); };
+// Adds the parameters where `coordinate` passes one of the levels between samples t0 and t1.
+template <typename Coordinate>
+void add_crossings(const Coordinate& coordinate, double t0, double t1,
+                   const std::vector<double>& levels, std::vector<double>& out) {
   const double c0 = coordinate(t0);
   const double c1 = coordinate(t1);
   const double low = std::min(c0, c1);
@@ -101,11 +99,11 @@ void add_crossings(const Path& path, double t0, double t1, const std::vector<dou
 
 // Adds Q dv along paths: first all of them by coarse rules, which tells what counts as small, then
 // better where halving changes something.
-template <typename Kind>
+template <typename Integrand>
 class Contour {
  public:
-  using Sums = typename Kind::Sums;
-  Contour(const FluxIntegrand<Kind>& integrand) : integrand_(&integrand) {}
+  using Sums = typename Integrand::Sums;
+  explicit Contour(const Integrand& integrand) : integrand_(&integrand) {}
 
   void add(const Path& path);
   void finish();
@@ -125,7 +123,8 @@ class Contour {
   std::vector<double> cuts(const Path& path, bool& u_varies, bool& v_varies) const;
   void halve(const Path& path, double t0, double t1, const Sums& coarse, int depth);
 
-  const FluxIntegrand<Kind>* integrand_;
+  const Integrand* integrand_;
+  int halvings_ = 0;
   UnitRule curve_rule_ = unit_rule(kCurvePoints);
   std::vector<Piece> pieces_;
   double negligible_ = 0.0;
@@ -133,9 +132,9 @@ class Contour {
   Sums errors_;  // what halving the last pieces changed
 };
 
-template <typename Kind>
-typename Kind::Sums Contour<Kind>::rule_sum(const Path& path, double t0, double t1,
-                                            const UnitRule& rule, bool fine) const {
+template <typename Integrand>
+typename Integrand::Sums Contour<Integrand>::rule_sum(const Path& path, double t0, double t1,
+                                                      const UnitRule& rule, bool fine) const {
   Sums sums;
   gp_Pnt2d p;
   gp_Vec2d d;
@@ -147,14 +146,16 @@ typename Kind::Sums Contour<Kind>::rule_sum(const Path& path, double t0, double 
   return sums;
 }
 
-template <typename Kind>
-void Contour<Kind>::halve(const Path& path, double t0, double t1, const Sums& coarse, int depth) {
+template <typename Integrand>
+void Contour<Integrand>::halve(const Path& path, double t0, double t1, const Sums& coarse,
+                               int depth) {
   const double middle = 0.5 * (t0 + t1);
   const Sums left = rule_sum(path, t0, middle, curve_rule_, true);
   const Sums right = rule_sum(path, middle, t1, curve_rule_, true);
   Sums both = left;
   both.add(right, 1.0);
-  if (both.distance(coarse) <= negligible_ || depth == kMaxHalvings) {
+  if (both.distance(coarse) <= negligible_ || depth == Integrand::kMaxHalvings ||
+      ++halvings_ > Integrand::kHalvings) {
     sums_.add(both, 1.0);
     errors_.add_distances(both, coarse);
     return;
@@ -163,12 +164,15 @@ void Contour<Kind>::halve(const Path& path, double t0, double t1, const Sums& co
   halve(path, middle, t1, right, depth + 1);
 }
 
-template <typename Kind>
-std::vector<double> Contour<Kind>::cuts(const Path& path, bool& u_varies, bool& v_varies) const {
+template <typename Integrand>
+std::vector<double> Contour<Integrand>::cuts(const Path& path, bool& u_varies,
+                                             bool& v_varies) const {
   const std::vector<double> smooth = path.breaks();
   std::vector<double> at = smooth;
   const gp_Pnt2d origin = path.value(path.first());
-  const int samples = path.degree() == 1 ? 1 : kCrossingSamples;
+  const auto u = [&](double t) { return path.value(t).X(); };
+  const auto v = [&](double t) { return path.value(t).Y(); };
+  const int samples = path.degree() == 1 && !Integrand::kHasLevel ? 1 : kCrossingSamples;
   for (size_t p = 0; p + 1 < smooth.size(); ++p) {
     for (int k = 0; k < samples; ++k) {
       const double t0 = smooth[p] + (smooth[p + 1] - smooth[p]) * k / samples;
@@ -176,25 +180,29 @@ std::vector<double> Contour<Kind>::cuts(const Path& path, bool& u_varies, bool& 
       const gp_Pnt2d end = path.value(t1);
       u_varies = u_varies || end.X() != origin.X();
       v_varies = v_varies || end.Y() != origin.Y();
-      add_crossings(path, t0, t1, integrand_->u_breaks(), true, at);
-      add_crossings(path, t0, t1, integrand_->v_breaks(), false, at);
+      add_crossings(u, t0, t1, integrand_->u_breaks(), at);
+      add_crossings(v, t0, t1, integrand_->v_breaks(), at);
+      if constexpr (Integrand::kHasLevel) {
+        const auto level = [&](double t) { return integrand_->level(path.value(t)); };
+        add_crossings(level, t0, t1, {0.0}, at);
+      }
     }
   }
   std::sort(at.begin(), at.end());
   return at;
 }
 
-template <typename Kind>
-void Contour<Kind>::add(const Path& path) {
+template <typename Integrand>
+void Contour<Integrand>::add(const Path& path) {
   bool u_varies = false;
   bool v_varies = false;
   const std::vector<double> at = cuts(path, u_varies, v_varies);
   if (!v_varies) return;
   int points = 0;
   if (integrand_->polynomial() && path.degree() > 0) {
-    const int across = u_varies ? Kind::kFactors * integrand_->u_degree() : 0;
-    points = (path.degree() * (across + Kind::kFactors * integrand_->v_degree()) - 1) / 2 + 1;
-    if (!integrand_->plane()) points = std::max(points, Kind::kLeastPoints);
+    const int across = u_varies ? Integrand::kFactors * integrand_->u_degree() : 0;
+    points = (path.degree() * (across + Integrand::kFactors * integrand_->v_degree()) - 1) / 2 + 1;
+    if (!integrand_->plane()) points = std::max(points, Integrand::kLeastPoints);
   }
   const bool exact = points > 0 && points <= kExactPoints;
   const UnitRule rule = exact ? unit_rule(points) : curve_rule_;
@@ -205,10 +213,10 @@ void Contour<Kind>::add(const Path& path) {
   }
 }
 
-template <typename Kind>
-void Contour<Kind>::finish() {
+template <typename Integrand>
+void Contour<Integrand>::finish() {
   for (const Piece& piece : pieces_) {
-    negligible_ += kConverged * static_cast<double>(piece.coarse.size) +
+    negligible_ += Integrand::kConverged * static_cast<double>(piece.coarse.size) +
                    kUnitRoundoff * piece.coarse.largest_noise();
   }
   for (const Piece& piece : pieces_) {
@@ -221,9 +229,9 @@ void Contour<Kind>::finish() {
 }
 
 // The loops of a face that uses its whole surface: the sides, of which only u = const count.
-template <typename Kind>
-bool add_domain(const Handle(Geom_Surface) & surface, FluxIntegrand<Kind>& integrand,
-                Contour<Kind>& contour) {
+template <typename Integrand>
+bool add_domain(const Handle(Geom_Surface) & surface, Integrand& integrand,
+                Contour<Integrand>& contour) {
   double u0, u1, v0, v1;
   surface->Bounds(u0, u1, v0, v1);
   for (double at : {u0, u1, v0, v1}) {
@@ -236,8 +244,9 @@ bool add_domain(const Handle(Geom_Surface) & surface, FluxIntegrand<Kind>& integ
 
 // Files leave gaps between the curves of a loop; a straight step closes each. False when a step is
 // so long that it is no gap but a missing edge.
-template <typename Kind>
-bool add_steps(const Handle(Geom_Surface) & surface, const FaceLoop& loop, Contour<Kind>& contour) {
+template <typename Integrand>
+bool add_steps(const Handle(Geom_Surface) & surface, const FaceLoop& loop,
+               Contour<Integrand>& contour) {
   for (size_t k = 0; k < loop.uses.size(); ++k) {
     const EdgeUse& use = loop.uses[k];
     const EdgeUse& next = loop.uses[(k + 1) % loop.uses.size()];
@@ -271,9 +280,9 @@ bool loop_box(const std::vector<FaceLoop>& loops, UvBox& box) {
   return true;
 }
 
-template <typename Kind>
+template <typename Integrand>
 bool add_loops(const Handle(Geom_Surface) & surface, const std::vector<FaceLoop>& loops,
-               FluxIntegrand<Kind>& integrand, Contour<Kind>& contour) {
+               Integrand& integrand, Contour<Integrand>& contour) {
   UvBox box;
   if (!loop_box(loops, box)) return false;
   integrand.prepare(box.u_min, box.u_max, box.v_min, box.v_max);
@@ -285,6 +294,17 @@ bool add_loops(const Handle(Geom_Surface) & surface, const std::vector<FaceLoop>
   return closed;
 }
 
+// Sums, errors, and whether the loops close.
+template <typename Result, typename Integrand>
+Result integrate(const Handle(Geom_Surface) & surface, const std::vector<FaceLoop>& loops,
+                 TrimKind trim, Integrand& integrand) {
+  Contour<Integrand> contour(integrand);
+  const bool closed = trim == TrimKind::kNatural ? add_domain(surface, integrand, contour)
+                                                 : add_loops(surface, loops, integrand, contour);
+  contour.finish();
+  return {contour.sums(), contour.errors(), closed};
+}
+
 }  // namespace
 
 template <typename Kind>
@@ -292,11 +312,13 @@ RegionIntegrals<Kind> integrate_region(const Handle(Geom_Surface) & surface,
                                        const std::vector<FaceLoop>& loops, TrimKind trim,
                                        const Kind& kind) {
   FluxIntegrand<Kind> integrand(surface, kind);
-  Contour<Kind> contour(integrand);
-  const bool closed = trim == TrimKind::kNatural ? add_domain(surface, integrand, contour)
-                                                 : add_loops(surface, loops, integrand, contour);
-  contour.finish();
-  return {contour.sums(), contour.errors(), closed};
+  return integrate<RegionIntegrals<Kind>>(surface, loops, trim, integrand);
+}
+
+RegionIntegrals<SectionIntegrand> integrate_region(const Handle(Geom_Surface) & surface,
+                                                   const std::vector<FaceLoop>& loops,
+                                                   TrimKind trim, SectionIntegrand& integrand) {
+  return integrate<RegionIntegrals<SectionIntegrand>>(surface, loops, trim, integrand);
 }
 
 template RegionIntegrals<FluxKind> integrate_region(const Handle(Geom_Surface) &,

@@ -1,6 +1,7 @@
 // Integrals over the kept region of a trimmed face, along its loops: see flux.h.
 //
-// A *kind* says what is integrated (flux_integrand.h): the flux of z, or the ten moments.
+// A *kind* says what is integrated (flux_integrand.h): the flux of z, or the ten moments; or it is
+// an integrand with lines of its own (section_integrand.h).
 //
 // Internal to the step layer (OpenCASCADE types).
 #pragma once
@@ -10,6 +11,7 @@
 
 #include "isochor/step/face_loops.h"
 #include "isochor/step/flux_integrand.h"
+#include "isochor/step/section_integrand.h"
 #include "isochor/step/trim_region.h"
 
 namespace isochor::internal {
@@ -26,5 +28,8 @@ template <typename Kind>
 RegionIntegrals<Kind> integrate_region(const Handle(Geom_Surface) & surface,
                                        const std::vector<FaceLoop>& loops, TrimKind trim,
                                        const Kind& kind);
+RegionIntegrals<SectionIntegrand> integrate_region(const Handle(Geom_Surface) & surface,
+                                                   const std::vector<FaceLoop>& loops,
+                                                   TrimKind trim, SectionIntegrand& integrand);
 
 }  // namespace isochor::internal

@@ -17,6 +17,7 @@
 #include "isochor/step/flux.h"
 #include "isochor/step/shape_facts.h"
 #include "isochor/step/solid_moments.h"
+#include "isochor/step/solid_section.h"
 
 namespace isochor::internal {
 namespace {
@@ -138,6 +139,10 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   }
   integrate(table, document, model);
   if (options.moments && model.facts.closed) model.moments = shape_moments(document.shape);
+  if (!options.section.empty() && model.facts.closed) {
+    const auto& plane = options.section;
+    model.section = shape_section(document.shape, Vec3(plane[0], plane[1], plane[2]), plane[3]);
+  }
   return model;
 }
 

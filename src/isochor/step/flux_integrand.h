@@ -84,6 +84,13 @@ template <typename Kind>
 class FluxIntegrand {
  public:
   using Sums = typename Kind::Sums;
+  // What Contour needs to know.
+  static constexpr int kFactors = Kind::kFactors;
+  static constexpr int kLeastPoints = Kind::kLeastPoints;
+  static constexpr int kMaxHalvings = 8;       // of a piece of a curve
+  static constexpr int kHalvings = 1 << 30;    // of all pieces together
+  static constexpr double kConverged = 1e-15;  // what a halving may change, see contour.cpp
+  static constexpr bool kHasLevel = false;     // no place where the integrand is not smooth
   FluxIntegrand(const Handle(Geom_Surface) & surface, const Kind& kind);
 
   // All rules are exact; false: pieces must be tested.

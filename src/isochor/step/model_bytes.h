@@ -64,8 +64,12 @@ void transfer(Io& io, MomentIntegrals& f) {
   io(f.origin, f.value, f.bound);
 }
 template <typename Io>
+void transfer(Io& io, Section& f) {
+  io(f.normal, f.height, f.area, f.bound, f.centroid, f.centroid_bound, f.coplanar);
+}
+template <typename Io>
 void transfer(Io& io, SolidModel& f) {
-  io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.moments,
+  io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.moments, f.section,
      f.notices);
 }
 template <typename Io>

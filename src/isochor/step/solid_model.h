@@ -13,6 +13,7 @@
 
 #include "isochor/bspline/patch_model.h"
 #include "isochor/volume/moments.h"
+#include "isochor/volume/section.h"
 
 namespace isochor {
 
@@ -79,6 +80,7 @@ struct SolidModel {
   std::vector<EdgeFacts> edges;
   ShapeFacts facts;
   std::optional<MomentIntegrals> moments;  // when asked for and the shape is closed
+  std::optional<Section> section;          // the same
   std::vector<std::string> notices;        // repairs and warnings of the reader, in words
 };
 
@@ -89,8 +91,9 @@ struct BridgeLimits {
 };
 
 struct ReadOptions {
-  std::vector<int> convert;  // 0-based faces to turn into B-spline patches although they are not
-  bool moments = false;      // also the moment integrals, which cost several times the volume
+  std::vector<int> convert;     // 0-based faces to turn into B-spline patches although they are not
+  bool moments = false;         // also the moment integrals, which cost several times the volume
+  std::vector<double> section;  // also the section by this plane, NX, NY, NZ, H; or empty
   BridgeLimits limits;
 };
 
