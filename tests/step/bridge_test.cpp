@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <thread>
 
 #include "isochor/base/error.h"
@@ -35,6 +36,7 @@ BridgeLimits seconds(double s) {
 
 int open_descriptors() {
   DIR* folder = opendir("/proc/self/fd");
+  if (folder == nullptr) throw std::runtime_error("/proc is not mounted: descriptors are unknown");
   int count = 0;
   while (readdir(folder) != nullptr) ++count;
   closedir(folder);

@@ -9,6 +9,7 @@
 #include <math_Vector.hxx>
 
 #include "isochor/bspline/basis.h"
+#include "isochor/step/line_pieces.h"
 #include "isochor/step/occt_surface.h"
 
 namespace isochor::internal {
@@ -18,23 +19,12 @@ namespace {
 constexpr int kSmoothPoints = 16;
 constexpr int kFinePoints = 25;
 constexpr int kMaxPoints = 48;
-constexpr double kWidestTurn = 1.1;  // radians per piece of an angular parameter
 constexpr double kRuleTest = 1e-15;  // a rule is good when twice as many points change less
 
 double least_step(const std::vector<double>& breaks) {
   double least = std::numeric_limits<double>::infinity();
   for (size_t k = 1; k < breaks.size(); ++k) least = std::min(least, breaks[k] - breaks[k - 1]);
   return least;
-}
-
-// Breaks of a periodic direction, repeated, because pcurves may run past the period.
-void repeat(std::vector<double>& breaks, double period) {
-  std::vector<double> all;
-  for (int turn = -1; turn <= 1; ++turn) {
-    for (size_t k = 0; k + 1 < breaks.size(); ++k) all.push_back(breaks[k] + turn * period);
-  }
-  all.push_back(breaks.back() + period);
-  breaks = std::move(all);
 }
 
 // A homogeneous point, with or without weight.
@@ -111,8 +101,8 @@ FluxIntegrand<Kind>::FluxIntegrand(const Handle(Geom_Surface) & surface, const K
   angular_u_ = u_degree_ <= 1 && adaptor.IsUPeriodic();
   least_u_step_ = least_step(breaks_.u);
   least_v_step_ = least_step(breaks_.v);
-  if (surface->IsUPeriodic()) repeat(breaks_.u, surface->UPeriod());
-  if (surface->IsVPeriodic()) repeat(breaks_.v, surface->VPeriod());
+  if (surface->IsUPeriodic()) repeat_breaks(breaks_.u, surface->UPeriod());
+  if (surface->IsVPeriodic()) repeat_breaks(breaks_.v, surface->VPeriod());
   const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
   if (!spline.IsNull() && !spline->IsUPeriodic() && !spline->IsVPeriodic()) {
     spline_ = from_occt(*spline);
@@ -270,21 +260,9 @@ typename Kind::Sums FluxIntegrand<Kind>::inner(double u, double v, bool fine) co
   const double high = std::max(start_, u);
   const double sign = u >= start_ ? 1.0 : -1.0;
   Sums sums;
-  double from = low;
-  const auto piece = [&](double to) {
-    const int parts =
-        angular_u_ ? std::max(1, static_cast<int>(std::ceil((to - from) / kWidestTurn))) : 1;
-    const double step = (to - from) / parts;
-    for (int k = 0; k < parts; ++k) {
-      const double end = k + 1 == parts ? to : from + (k + 1) * step;
-      add_piece(from + k * step, end, v, table.rule, sign, sums);
-    }
-    from = to;
-  };
-  for (double at : breaks_.u) {
-    if (at > from && at < high) piece(at);
-  }
-  if (high > from) piece(high);
+  for_each_smooth_piece(breaks_.u, low, high, angular_u_, [&](double begin, double end) {
+    add_piece(begin, end, v, table.rule, sign, sums);
+  });
   return sums;
 }
 

@@ -7,6 +7,7 @@
 
 #include "isochor/bspline/basis.h"
 #include "isochor/step/flux_integrand.h"
+#include "isochor/step/line_pieces.h"
 #include "isochor/step/occt_surface.h"
 
 namespace isochor::internal {
@@ -14,22 +15,11 @@ namespace {
 
 constexpr int kSamples = 12;  // of Z on a piece of a line: roots are searched between them
 constexpr int kBisections = 54;
-constexpr int kSmoothPoints = 16;    // resolve a sixth of a turn, or a quotient
-constexpr double kWidestTurn = 1.1;  // radians per piece of an angular parameter
+constexpr int kSmoothPoints = 16;  // resolve a sixth of a turn, or a quotient
 
 struct LinePoint {
   Vec3 s, su, sv;
 };
-
-// Breaks of a periodic direction, repeated, because curves may run past the period.
-void repeat(std::vector<double>& breaks, double period) {
-  const std::vector<double> once = breaks;
-  breaks.clear();
-  for (int turn = -1; turn <= 1; ++turn) {
-    for (size_t k = 0; k + 1 < once.size(); ++k) breaks.push_back(once[k] + turn * period);
-  }
-  breaks.push_back(once.back() + period);
-}
 
 const UnitRule& rule_of(int points) {
   static const auto rules = [] {
@@ -143,8 +133,8 @@ SectionIntegrand::SectionIntegrand(const Handle(Geom_Surface) & surface, double 
   const int exact = (3 * u_degree_ + 1) / 2;
   points_ = polynomial ? exact : std::max(exact, kSmoothPoints);
   angular_u_ = u_degree_ <= 1 && adaptor.IsUPeriodic();
-  if (surface->IsUPeriodic()) repeat(breaks_.u, surface->UPeriod());
-  if (surface->IsVPeriodic()) repeat(breaks_.v, surface->VPeriod());
+  if (surface->IsUPeriodic()) repeat_breaks(breaks_.u, surface->UPeriod());
+  if (surface->IsVPeriodic()) repeat_breaks(breaks_.v, surface->VPeriod());
   const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
   if (!spline.IsNull() && !spline->IsUPeriodic() && !spline->IsVPeriodic()) {
     spline_ = from_occt(*spline);
@@ -251,21 +241,8 @@ SectionSums SectionIntegrand::inner(double u, double v, bool) const {
   if (!(low < high)) return sums;
   const double sign = u >= start_ ? 1.0 : -1.0;
   const Line line(*this, v);
-  double from = low;
-  const auto piece = [&](double to) {
-    const int parts =
-        angular_u_ ? std::max(1, static_cast<int>(std::ceil((to - from) / kWidestTurn))) : 1;
-    const double step = (to - from) / parts;
-    for (int k = 0; k < parts; ++k) {
-      const double begin = from + k * step;
-      add_piece(line, begin, k + 1 == parts ? to : begin + step, sign, sums);
-    }
-    from = to;
-  };
-  for (double at : breaks_.u) {
-    if (at > from && at < high) piece(at);
-  }
-  if (high > from) piece(high);
+  for_each_smooth_piece(breaks_.u, low, high, angular_u_,
+                        [&](double begin, double end) { add_piece(line, begin, end, sign, sums); });
   return sums;
 }
 
