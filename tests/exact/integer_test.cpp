@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -74,6 +75,46 @@ TEST(Integer, LeastCommonMultiple) {
 
 TEST(Integer, DivisionByZeroIsTheCallersBug) {
   EXPECT_THROW(Integer(4).divided_exactly(0), PreconditionError);
+}
+
+TEST(Integer, DivisionRoundsAsNamed) {
+  for (long a = -12; a <= 12; ++a) {
+    for (long b : {-5L, -2L, 1L, 3L, 4L}) {
+      const double quotient = static_cast<double>(a) / static_cast<double>(b);
+      EXPECT_EQ(Integer(a).divided_floor(b), Integer(static_cast<long>(std::floor(quotient))));
+      EXPECT_EQ(Integer(a).divided_nearest(b),
+                Integer(static_cast<long>(std::floor(quotient + 0.5))))
+          << a << " / " << b;
+      EXPECT_EQ(Integer(a).is_multiple_of(b), a % b == 0);
+    }
+    EXPECT_EQ(Integer(a).modulo(5), static_cast<unsigned long>(((a % 5) + 5) % 5));
+  }
+  EXPECT_THROW(Integer(1).divided_nearest(0), PreconditionError);
+  EXPECT_TRUE(Integer(0).is_multiple_of(0));
+  EXPECT_FALSE(Integer(2).is_multiple_of(0));
+}
+
+TEST(Integer, LeavesTheMachineWordOnlyWhenItMust) {
+  const long largest = std::numeric_limits<long>::max();
+  EXPECT_EQ(Integer(largest).to_long(), largest);
+  EXPECT_EQ((Integer(largest) + 1).to_long(), std::nullopt);
+  EXPECT_EQ((-Integer(largest) - 1).to_long(), std::numeric_limits<long>::min());
+  EXPECT_EQ((-Integer(largest) - 2).to_long(), std::nullopt);
+}
+
+TEST(Integer, DoublesTruncateAndOverflowToInfinity) {
+  EXPECT_EQ(power_of(2, 60).to_double(), std::ldexp(1.0, 60));
+  EXPECT_EQ((power_of(2, 60) + 1).to_double(), std::ldexp(1.0, 60));
+  EXPECT_EQ((-power_of(2, 1023)).to_double(), -std::ldexp(1.0, 1023));
+  EXPECT_EQ(power_of(2, 1024).to_double(), std::numeric_limits<double>::infinity());
+  EXPECT_EQ((-power_of(2, 5000)).to_double(), -std::numeric_limits<double>::infinity());
+}
+
+TEST(Integer, GreatestCommonDivisorDividesBoth) {
+  EXPECT_EQ(gcd(Integer(-12), Integer(18)), Integer(6));
+  EXPECT_EQ(gcd(Integer(0), Integer(-7)), Integer(7));
+  EXPECT_EQ(gcd(Integer(0), Integer(0)), Integer(0));
+  EXPECT_EQ(gcd(power_of(6, 80), power_of(10, 80)), power_of(2, 80));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <flint/flint.h>
 #include <flint/fmpz.h>
 
+#include <limits>
 #include <memory>
 #include <type_traits>
 
@@ -59,6 +60,41 @@ Integer Integer::divided_exactly(const Integer& b) const {
   return result;
 }
 
+Integer Integer::divided_floor(const Integer& b) const {
+  ISOCHOR_REQUIRE(!b.is_zero());
+  Integer result;
+  fmpz_fdiv_q(&result.word_, &word_, &b.word_);
+  return result;
+}
+
+Integer Integer::divided_nearest(const Integer& b) const {
+  Integer twice = *this + *this;
+  twice += b;
+  return twice.divided_floor(b + b);
+}
+
+bool Integer::is_multiple_of(const Integer& b) const {
+  return b.is_zero() ? is_zero() : fmpz_divisible(&word_, &b.word_) != 0;
+}
+
+unsigned long Integer::modulo(unsigned long modulus) const {
+  ISOCHOR_REQUIRE(modulus != 0);
+  return fmpz_fdiv_ui(&word_, modulus);
+}
+
+std::optional<long> Integer::to_long() const {
+  if (!fmpz_fits_si(&word_)) return std::nullopt;
+  return fmpz_get_si(&word_);
+}
+
+double Integer::to_double() const {
+  constexpr unsigned long kLargestExponent = std::numeric_limits<double>::max_exponent;
+  if (bits() > kLargestExponent) {
+    return sign() * std::numeric_limits<double>::infinity();
+  }
+  return fmpz_get_d(&word_);
+}
+
 int Integer::sign() const { return fmpz_sgn(&word_); }
 unsigned long Integer::bits() const { return fmpz_bits(&word_); }
 
@@ -75,6 +111,12 @@ int compare(const Integer& a, const Integer& b) {
 Integer lcm(const Integer& a, const Integer& b) {
   Integer result;
   fmpz_lcm(&result.word_, &a.word_, &b.word_);
+  return result;
+}
+
+Integer gcd(const Integer& a, const Integer& b) {
+  Integer result;
+  fmpz_gcd(&result.word_, &a.word_, &b.word_);
   return result;
 }
 

@@ -4,6 +4,7 @@
 // here: the one machine word is FLINT's own handle, which only exact's sources interpret.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -37,6 +38,19 @@ class Integer {
   Integer shifted(unsigned long exponent) const;
   // *this / b where b is known to divide; PreconditionError when b is zero.
   Integer divided_exactly(const Integer& b) const;
+  // The largest integer not above *this / b, and the nearest one (ties upwards). PreconditionError
+  // when b is zero.
+  Integer divided_floor(const Integer& b) const;
+  Integer divided_nearest(const Integer& b) const;
+  // Whether b divides; zero divides only zero.
+  bool is_multiple_of(const Integer& b) const;
+  // The remainder in [0, modulus). PreconditionError when the modulus is zero.
+  unsigned long modulo(unsigned long modulus) const;
+  // The value when it fits a long.
+  std::optional<long> to_long() const;
+  // The nearest double towards zero; infinite beyond the range.
+  double to_double() const;
+  Integer abs() const { return sign() < 0 ? -*this : *this; }
 
   int sign() const;  // -1, 0, 1
   bool is_zero() const { return word_ == 0; }
@@ -50,8 +64,10 @@ class Integer {
   friend bool operator!=(const Integer& a, const Integer& b) { return compare(a, b) != 0; }
   friend bool operator<(const Integer& a, const Integer& b) { return compare(a, b) < 0; }
   friend Integer lcm(const Integer& a, const Integer& b);
+  friend Integer gcd(const Integer& a, const Integer& b);
 
  private:
+  friend class IntegerMatrix;
   friend class Rational;
   long word_ = 0;  // FLINT's fmpz
 };
@@ -59,5 +75,7 @@ class Integer {
 int compare(const Integer& a, const Integer& b);
 // The least common multiple, non-negative; zero when either is zero.
 Integer lcm(const Integer& a, const Integer& b);
+// The greatest common divisor, non-negative; |a| when b is zero.
+Integer gcd(const Integer& a, const Integer& b);
 
 }  // namespace isochor
