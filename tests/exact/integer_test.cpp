@@ -43,6 +43,13 @@ TEST(Integer, RingLaws) {
     sum.add_product(b, -7);
     EXPECT_EQ(sum, a + b * c - Integer(7) * b);
     EXPECT_EQ((a * b).divided_exactly(b), a);
+    sum.subtract_product(b, c);
+    EXPECT_EQ(sum, a - Integer(7) * b);
+    Integer product = a * b;
+    product.divide_exactly(b);
+    EXPECT_EQ(product, a);
+    EXPECT_EQ(compare_magnitudes(a, b), compare(a.abs(), b.abs()));
+    EXPECT_EQ(compare_magnitudes(a, -a), 0);
   }
 }
 

@@ -46,6 +46,9 @@ void Integer::add_product(const Integer& a, const Integer& b) {
   fmpz_addmul(&word_, &a.word_, &b.word_);
 }
 void Integer::add_product(const Integer& a, long b) { fmpz_addmul_si(&word_, &a.word_, b); }
+void Integer::subtract_product(const Integer& a, const Integer& b) {
+  fmpz_submul(&word_, &a.word_, &b.word_);
+}
 
 Integer Integer::shifted(unsigned long exponent) const {
   Integer result;
@@ -58,6 +61,11 @@ Integer Integer::divided_exactly(const Integer& b) const {
   Integer result;
   fmpz_divexact(&result.word_, &word_, &b.word_);
   return result;
+}
+
+void Integer::divide_exactly(const Integer& b) {
+  ISOCHOR_REQUIRE(!b.is_zero());
+  fmpz_divexact(&word_, &word_, &b.word_);
 }
 
 Integer Integer::divided_floor(const Integer& b) const {
@@ -105,6 +113,11 @@ std::string Integer::to_string() const {
 
 int compare(const Integer& a, const Integer& b) {
   const int order = fmpz_cmp(&a.word_, &b.word_);
+  return order < 0 ? -1 : (order > 0 ? 1 : 0);
+}
+
+int compare_magnitudes(const Integer& a, const Integer& b) {
+  const int order = fmpz_cmpabs(&a.word_, &b.word_);
   return order < 0 ? -1 : (order > 0 ? 1 : 0);
 }
 

@@ -34,10 +34,14 @@ class Integer {
   // *this += a b, without a temporary. The workhorse of exact contractions.
   void add_product(const Integer& a, const Integer& b);
   void add_product(const Integer& a, long b);
+  // *this -= a b, likewise.
+  void subtract_product(const Integer& a, const Integer& b);
   // *this 2^exponent; exponent >= 0.
   Integer shifted(unsigned long exponent) const;
   // *this / b where b is known to divide; PreconditionError when b is zero.
   Integer divided_exactly(const Integer& b) const;
+  // The same in place.
+  void divide_exactly(const Integer& b);
   // The largest integer not above *this / b, and the nearest one (ties upwards). PreconditionError
   // when b is zero.
   Integer divided_floor(const Integer& b) const;
@@ -63,6 +67,7 @@ class Integer {
   friend bool operator==(const Integer& a, const Integer& b) { return compare(a, b) == 0; }
   friend bool operator!=(const Integer& a, const Integer& b) { return compare(a, b) != 0; }
   friend bool operator<(const Integer& a, const Integer& b) { return compare(a, b) < 0; }
+  friend int compare_magnitudes(const Integer& a, const Integer& b);  // sign of |a| - |b|
   friend Integer lcm(const Integer& a, const Integer& b);
   friend Integer gcd(const Integer& a, const Integer& b);
 
@@ -73,6 +78,7 @@ class Integer {
 };
 
 int compare(const Integer& a, const Integer& b);
+int compare_magnitudes(const Integer& a, const Integer& b);
 // The least common multiple, non-negative; zero when either is zero.
 Integer lcm(const Integer& a, const Integer& b);
 // The greatest common divisor, non-negative; |a| when b is zero.
