@@ -2,41 +2,108 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
+#include <unordered_set>
 
 #include "isochor/base/error.h"
-#include "isochor/exact/rational.h"
 
 namespace isochor::internal {
 namespace {
 
-// The library's message without its own "[json.exception...]" prefix.
+// The library's message without its own "[json.exception...]" prefix, and without the megabytes
+// that it may quote.
 std::string plain_message(const std::string& what) {
   const size_t end = what.find("] ");
-  return end == std::string::npos ? what : what.substr(end + 2);
+  const std::string text = end == std::string::npos ? what : what.substr(end + 2);
+  constexpr size_t kHead = 200, kTail = 60;
+  if (text.size() <= kHead + kTail) return text;
+  return text.substr(0, kHead) + "..." + text.substr(text.size() - kTail);
 }
+
+// Builds the tree from the events of the parser, in time linear in the text: the library's own
+// builder looks through all keys of an object for each new one.
+class TreeBuilder {
+ public:
+  explicit TreeBuilder(const std::string& file) : file_(file) {}
+  Json take() { return std::move(root_); }
+
+  bool null() { return put(nullptr); }
+  bool boolean(bool value) { return put(value); }
+  bool number_integer(std::int64_t value) { return put(value); }
+  bool number_unsigned(std::uint64_t value) { return put(value); }
+  bool number_float(double value, const std::string&) { return put(value); }
+  bool string(std::string& value) { return put(std::move(value)); }
+  bool binary(Json::binary_t&) { return false; }  // not in texts
+  bool start_object(size_t) {
+    open(Json::object());
+    keys_.emplace_back();
+    return true;
+  }
+  bool key(std::string& key) {
+    if (!keys_.back().insert(key).second) {
+      throw InputError(file_, key, "the key occurs twice in one object");
+    }
+    key_ = key;
+    return true;
+  }
+  bool end_object() {
+    keys_.pop_back();
+    open_.pop_back();
+    return true;
+  }
+  bool start_array(size_t) {
+    open(Json::array());
+    return true;
+  }
+  bool end_array() {
+    open_.pop_back();
+    return true;
+  }
+  bool parse_error(size_t, const std::string&, const Json::exception& error) {
+    throw InputError(file_, "", "not valid JSON: " + plain_message(error.what()));
+  }
+
+ private:
+  Json* place(Json value) {
+    if (open_.empty()) return &(root_ = std::move(value));
+    Json& parent = *open_.back();
+    if (parent.is_object()) return &append(parent, key_, std::move(value));
+    parent.push_back(std::move(value));
+    return &parent.back();
+  }
+  bool put(Json value) {
+    place(std::move(value));
+    return true;
+  }
+  // No file of ours is deep, and code that walks a tree should not meet the end of the stack.
+  void open(Json value) {
+    constexpr size_t kDeepest = 64;
+    if (open_.size() == kDeepest) {
+      throw InputError(file_, key_, "lists and objects are nested more than 64 deep");
+    }
+    open_.push_back(place(std::move(value)));
+  }
+
+  const std::string& file_;
+  Json root_;
+  std::vector<Json*> open_;  // from the outermost; the innermost grows, so all stay where they are
+  std::vector<std::unordered_set<std::string>> keys_;  // of the open objects
+  std::string key_;
+};
 
 }  // namespace
 
 Json parse_json(const std::string& text, const std::string& file) {
-  std::vector<std::set<std::string>> open_objects;
-  const auto reject_repeats = [&](int, Json::parse_event_t event, Json& parsed) {
-    if (event == Json::parse_event_t::object_start) open_objects.emplace_back();
-    if (event == Json::parse_event_t::object_end) open_objects.pop_back();
-    if (event == Json::parse_event_t::key) {
-      const auto key = parsed.get<std::string>();
-      if (!open_objects.back().insert(key).second) {
-        throw InputError(file, key, "the key occurs twice in one object");
-      }
-    }
-    return true;
-  };
-  try {
-    return Json::parse(text, reject_repeats);
-  } catch (const Json::exception& error) {
-    throw InputError(file, "", "not valid JSON: " + plain_message(error.what()));
-  }
+  TreeBuilder builder(file);
+  Json::sax_parse(text, &builder);
+  return builder.take();
+}
+
+Json& append(Json& object, const std::string& key, Json value) {
+  auto& members = object.get_ref<Json::object_t&>();
+  return static_cast<Json::object_t::Container&>(members)
+      .emplace_back(key, std::move(value))
+      .second;
 }
 
 void JsonValue::fail(const std::string& reason) const { throw InputError(*file_, where_, reason); }
@@ -62,6 +129,16 @@ double JsonValue::number() const {
   }
   if (!std::isfinite(result)) fail("expected a finite number, found " + print());
   return result;
+}
+
+Rational JsonValue::rational() const {
+  if (value_->is_number_integer()) return Rational::parse(value_->dump());
+  if (!value_->is_string()) return Rational(number());
+  try {
+    return Rational::parse(value_->get_ref<const std::string&>());
+  } catch (const InputError& error) {
+    fail(error.reason() + ", found " + print());
+  }
 }
 
 int JsonValue::integer() const {

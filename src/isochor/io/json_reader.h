@@ -8,13 +8,19 @@
 #include <vector>
 
 #include "isochor/base/vec3.h"
+#include "isochor/exact/rational.h"
 
 namespace isochor::internal {
 
 using Json = nlohmann::ordered_json;
 
-// Parses a whole document. Throws InputError with line and column, also for repeated keys.
+// Parses a whole document in time linear in its length. Throws InputError with line and column,
+// also for repeated keys and for lists and objects nested more than 64 deep.
 Json parse_json(const std::string& text, const std::string& file);
+
+// Adds a key that the object does not have, which is not checked: constant time, where the library
+// looks through all keys.
+Json& append(Json& object, const std::string& key, Json value);
 
 // A JSON value and where it stands.
 class JsonValue {
@@ -31,6 +37,9 @@ class JsonValue {
 
   // A finite number, or an exact string such as "3/2" or "0.1".
   double number() const;
+  // The same without rounding: a number with a point or an exponent is the double nearest to it, as
+  // everywhere in JSON; an integer below 2^64 and a string are exactly what is written.
+  Rational rational() const;
   int integer() const;
   bool boolean() const;
   std::string text() const;

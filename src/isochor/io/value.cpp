@@ -22,7 +22,7 @@ Json convert(const Value& value) {
     }
     Json operator()(const Value::Object& object) const {
       Json out = Json::object();
-      for (const auto& [key, item] : object) out[key] = convert(item);
+      for (const auto& [key, item] : object) internal::append(out, key, convert(item));
       return out;
     }
   };
