@@ -1,0 +1,9 @@
+#include "ecles/verdict_trial.h"
+
+namespace isochor {
+namespace {
+
+TEST(Verdicts, RightOnRandomSystems) { testing::expect_all_right(1000, 4); }
+
+}  // namespace
+}  // namespace isochor
