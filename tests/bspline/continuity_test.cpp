@@ -9,6 +9,7 @@
 
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/refinement.h"
+#include "support/cut.h"
 #include "support/locks.h"
 #include "support/models.h"
 #include "support/splines.h"
@@ -16,6 +17,7 @@
 namespace isochor {
 namespace {
 
+using ::isochor::testing::cut_in_two;
 using ::isochor::testing::locked_points;
 using ::isochor::testing::shaken;
 using ::testing::AllOf;
@@ -29,48 +31,6 @@ double largest_move(const PatchModel& model, const std::vector<Vec3>& at) {
     largest = std::max(largest, (at[i] - model.points[i]).norm());
   }
   return largest;
-}
-
-// A surface as two patches, cut at a u knot by inserting it until it interpolates; the cut shares
-// its points.
-PatchModel cut_in_two(const Surface& surface, double at) {
-  const int d = surface.u_knots().degree();
-  const int extra = d - surface.u_knots().multiplicity(at);
-  const Surface cut = refine(
-      surface, with_knots(surface.u_knots(), std::vector<double>(static_cast<size_t>(extra), at)),
-      surface.v_knots());
-  const auto& knots = cut.u_knots().knots();
-  const auto first = std::lower_bound(knots.begin(), knots.end(), at);
-  const int row = static_cast<int>(first - knots.begin()) - 1;
-  std::vector<double> low(knots.begin(), first + d);
-  low.push_back(at);
-  std::vector<double> high(first, knots.end());
-  high.insert(high.begin(), at);
-  PatchModel model;
-  model.points = cut.poles();
-  const int nv = cut.v_size();
-  const auto add = [&](const char* name, int from, int to, const std::vector<double>& u) {
-    Patch patch{name,
-                "face:" + std::to_string(model.patches.size() + 1),
-                KnotVector(d, u),
-                cut.v_knots(),
-                {},
-                {},
-                false,
-                {},
-                {}};
-    for (int i = from; i < to; ++i) {
-      for (int j = 0; j < nv; ++j) {
-        patch.points.push_back(i * nv + j);
-        if (cut.rational()) patch.weights.push_back(cut.weights()[cut.index(i, j)]);
-      }
-    }
-    model.patches.push_back(patch);
-  };
-  add("fore", 0, row + 1, low);
-  add("aft", row, cut.u_size(), high);
-  model.joins = find_joins(model);
-  return model;
 }
 
 TEST(Continuity, SmoothJoinsStaySmooth) {

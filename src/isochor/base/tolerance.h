@@ -88,6 +88,20 @@ inline constexpr double kSameSurface = 1e-12;
 // this: a few d roundings of knot insertion in two directions, for degrees to 25. Dimensionless.
 inline constexpr double kSameRow = 1e-12;
 
+// Two strips of surface meet by constant factors when |H_n+ - lambda H_n- - rho H| (and the
+// relation of second derivatives) stays below kSmoothResidual times the terms it is made of.
+// Dimensionless: poles written with twelve digits pass; what is left is carried through edits
+// unchanged.
+inline constexpr double kSmoothResidual = 1e-10;
+
+// A factor measured on poles that are doubles is taken as the simplest rational within this part of
+// itself (or within the residual, if that is larger). Dimensionless: some hundred roundings.
+inline constexpr double kFactorNoise = 1e-13;
+
+// Weights near a line are products w_ij = a_i b_j when they differ from them by at most this part.
+// Dimensionless: products of written weights are rounded once or twice.
+inline constexpr double kSeparateWeights = 1e-13;
+
 // The direction of a volume correction is stationary when it turns by less than this; radians.
 // Below it the displacement changes by less than kReached of itself, so nothing visible is gained.
 inline constexpr double kStationary = 1e-13;

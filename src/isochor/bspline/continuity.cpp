@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "isochor/bspline/joins.h"
+#include "isochor/bspline/smooth_relations.h"
 #include "isochor/bspline/smoothness.h"
 #include "isochor/bspline/trims.h"
 
@@ -75,6 +77,32 @@ class LockCollector {
   std::set<std::pair<int, int>> seen_;
 };
 
+// What relations take care of, so that no lock has to.
+class Covered {
+ public:
+  explicit Covered(const std::vector<SmoothRelation>& relations) {
+    for (const SmoothRelation& relation : relations) {
+      if (relation.kind == SmoothRelation::Kind::kKnotLine) {
+        lines_.insert({relation.patch, relation.across, relation.knot});
+      } else if (relation.kind == SmoothRelation::Kind::kPole) {
+        for (const SideRef& ref : relation.sides) poles_.insert({ref.patch, ref.side});
+      } else {
+        joins_.insert(relation.join);
+      }
+    }
+  }
+  bool join(int k) const { return joins_.count(k) > 0; }
+  bool line(int q, Direction across, double knot) const {
+    return lines_.count({q, across, knot}) > 0;
+  }
+  bool pole(const SideRef& ref) const { return poles_.count({ref.patch, ref.side}) > 0; }
+
+ private:
+  std::set<int> joins_;
+  std::set<std::tuple<int, Direction, double>> lines_;
+  std::set<std::pair<int, Side>> poles_;
+};
+
 void lock_trim(const PatchModel& model, int q, LockCollector* locks) {
   const Patch& patch = model.patches[static_cast<size_t>(q)];
   if (patch.trim.empty()) return;
@@ -121,11 +149,11 @@ void lock_wrap(const PatchModel& model, const Join& join, LockCollector* locks) 
   }
 }
 
-void lock_join(const PatchModel& model, const Join& join, LockCollector* locks) {
+void lock_join(const PatchModel& model, const Join& join, bool covered, LockCollector* locks) {
   const std::string a = label_of(patch_of(model, join.a));
   const std::string b = label_of(patch_of(model, join.b));
   const bool seam = join.a.patch == join.b.patch;
-  const int order = order_of(join.smoothness);
+  const int order = covered ? 0 : order_of(join.smoothness);
   for (const SideRef& ref : {join.a, join.b}) {
     const int row = rows_for(model, ref, 0);
     if (!join.matching) {
@@ -145,12 +173,12 @@ void lock_join(const PatchModel& model, const Join& join, LockCollector* locks) 
 }
 
 void lock_knot_lines(const PatchModel& model, int q, const Surface& surface, double size,
-                     LockCollector* locks) {
+                     const Covered& covered, LockCollector* locks) {
   const Patch& patch = model.patches[static_cast<size_t>(q)];
   for (Direction direction : {Direction::kU, Direction::kV}) {
     const KnotVector& knots = knots_of(patch, direction);
     for (const KnotLine& line : interior_smoothness(surface, direction, size)) {
-      if (line.measured <= line.guaranteed) continue;
+      if (line.measured <= line.guaranteed || covered.line(q, direction, line.knot)) continue;
       const int order = protected_order(line.measured, knots.degree());
       if (order <= knots.degree() - line.multiplicity) continue;
       locks->lock_functions(q, direction, functions_rough_at(knots, line.knot, order),
@@ -164,7 +192,7 @@ void lock_knot_lines(const PatchModel& model, int q, const Surface& surface, dou
 }
 
 void lock_poles(const PatchModel& model, int q, const Surface& surface, double size,
-                const PointClasses& classes, LockCollector* locks) {
+                const PointClasses& classes, const Covered& covered, LockCollector* locks) {
   const Patch& patch = model.patches[static_cast<size_t>(q)];
   for (Side side : kSides) {
     const PoleSide pole = pole_side(surface, side, size);
@@ -175,7 +203,7 @@ void lock_poles(const PatchModel& model, int q, const Surface& surface, double s
       locks->lock_rows({q, side}, 0, 1, where + ", but its poles are not tied to each other",
                        false);
     }
-    if (pole.smoothness != Smoothness::kSharp) {
+    if (pole.smoothness != Smoothness::kSharp && !covered.pole({q, side})) {
       locks->lock_rows({q, side}, 0, 2,
                        where +
                            " with a tangent plane: the poles around it stay so that no tip "
@@ -219,25 +247,29 @@ std::vector<int> functions_rough_at(const KnotVector& knots, double knot, int or
   return rough;
 }
 
-void derive_locks(PatchModel& model) {
+void derive_locks(PatchModel& model) { derive_locks(model, {}); }
+
+void derive_locks(PatchModel& model, const std::vector<SmoothRelation>& relations) {
   LockCollector locks(&model);
+  const Covered covered(relations);
   const double size = diagonal(model);
   const PointClasses classes = point_classes(model);
   for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
     lock_trim(model, q, &locks);
     const Surface surface = model.surface(q);
-    lock_knot_lines(model, q, surface, size, &locks);
-    lock_poles(model, q, surface, size, classes, &locks);
+    lock_knot_lines(model, q, surface, size, covered, &locks);
+    lock_poles(model, q, surface, size, classes, covered, &locks);
   }
   for (const LockedSide& side : model.locked_sides) lock_side(model, side, &locks);
   for (const auto& [point, reason] : model.fixed_points) {
     locks.lock(point, locks.reason(reason, false));
   }
-  for (const Join& join : model.joins) {
-    if (is_wrap(model, join, classes)) {
+  for (int k = 0; k < static_cast<int>(model.joins.size()); ++k) {
+    const Join& join = model.joins[static_cast<size_t>(k)];
+    if (!is_wrap(model, join, classes)) {
+      lock_join(model, join, covered.join(k), &locks);
+    } else if (!covered.join(k)) {
       lock_wrap(model, join, &locks);
-    } else {
-      lock_join(model, join, &locks);
     }
   }
 }

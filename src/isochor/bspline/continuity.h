@@ -1,9 +1,9 @@
 // Which points of a model must not move, and why.
 //
-// Until displacements obey equations across joins, smoothness is kept by holding still every pole
-// that could break it. A function that vanishes at a curve together with its first k derivatives
-// keeps the surface's own smoothness of order k there, polynomial or rational: poles of such
-// functions may move, all others are locked.
+// Smoothness is kept by equations where they exist (smooth_relations.h), else by holding still
+// every pole that could break it. A function that vanishes at a curve together with its first k
+// derivatives keeps the surface's own smoothness of order k there, polynomial or rational: poles of
+// such functions may move, all others are locked.
 //
 // Laws:
 //  (1) moving only unlocked points (tied points together) keeps every join and every knot line as
@@ -20,6 +20,8 @@
 
 namespace isochor {
 
+struct SmoothRelation;
+
 // Replaces model.locks and model.lock_reasons. Uses model.joins as they are (the reader fills them,
 // or find_joins). What is locked:
 //  - fixed points: as the reader said;
@@ -31,6 +33,9 @@ namespace isochor {
 //  - collapsed sides with a tangent plane, or nearly: rows 0..1 (continuity). A pole's curvature is
 //    not measured and not kept. Collapsed sides whose points are not tied: row 0.
 void derive_locks(PatchModel& model);
+// The same without the locks for the smoothness that `relations` keep: displacements must then
+// fulfil their rows. Where a scale cannot state a relation, lock its points_locking besides.
+void derive_locks(PatchModel& model, const std::vector<SmoothRelation>& relations);
 
 // The pole rows, counted from the side, that influence derivatives of order 0..order across it:
 // 0 .. order for clamped knots, more for unclamped ones.

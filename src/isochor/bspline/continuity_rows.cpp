@@ -1,0 +1,257 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "isochor/base/error.h"
+#include "isochor/base/tolerance.h"
+#include "isochor/bspline/exact_refinement.h"
+#include "isochor/bspline/joins.h"
+#include "isochor/bspline/refinement.h"
+#include "isochor/bspline/smooth_relations.h"
+
+namespace isochor {
+namespace {
+
+using Kind = SmoothRelation::Kind;
+
+Direction other(Direction direction) {
+  return direction == Direction::kU ? Direction::kV : Direction::kU;
+}
+
+const KnotVector& knots_of(const CoarseKnots& knots, Direction direction) {
+  return direction == Direction::kU ? knots.u : knots.v;
+}
+
+// The same degree and knots, mapped to [0, 1].
+bool same_knots(const KnotVector& a, const KnotVector& b, bool flipped) {
+  if (a.degree() != b.degree() || a.size() != b.size()) return false;
+  const int count = static_cast<int>(a.knots().size());
+  for (int i = 0; i < count; ++i) {
+    const double first = (a[i] - a.begin()) / (a.end() - a.begin());
+    const double second = (b[flipped ? count - 1 - i : i] - b.begin()) / (b.end() - b.begin());
+    if (std::abs(first - (flipped ? 1.0 - second : second)) > kSameSide) return false;
+  }
+  return true;
+}
+
+// Equations across lines that are to be identical when they agree within noise, in either order.
+class EquationPool {
+ public:
+  // Replaces `equation` by a stored one (its own strips and rows kept) or stores it.
+  void share(LineEquation* equation, double noise) {
+    std::vector<Rational> values;
+    for (const LineTerm& term : *equation) values.push_back(term.value);
+    for (const std::vector<Rational>& known : known_) {
+      if (known.size() != values.size()) continue;
+      if (agree(known, values, noise)) return assign(known, equation);
+      const std::vector<Rational> reversed(known.rbegin(), known.rend());
+      if (agree(reversed, values, noise)) return assign(reversed, equation);
+    }
+    known_.push_back(std::move(values));
+  }
+
+ private:
+  static bool agree(const std::vector<Rational>& a, const std::vector<Rational>& b, double noise) {
+    size_t largest = 0;
+    for (size_t k = 1; k < a.size(); ++k) {
+      if (a[largest].abs() < a[k].abs()) largest = k;
+    }
+    const double scale = (b[largest] / a[largest]).to_double();
+    const double size = std::abs(b[largest].to_double());
+    for (size_t k = 0; k < a.size(); ++k) {
+      if (!(std::abs(scale * a[k].to_double() - b[k].to_double()) <= noise * size)) return false;
+    }
+    return true;
+  }
+
+  static void assign(const std::vector<Rational>& values, LineEquation* equation) {
+    for (size_t k = 0; k < values.size(); ++k) (*equation)[k].value = values[k];
+  }
+
+  std::vector<std::vector<Rational>> known_;
+};
+
+class RowMaker {
+ public:
+  RowMaker(const PatchModel& model, const std::vector<CoarseKnots>& coarse)
+      : model_(model), coarse_(coarse), classes_(point_classes(model)) {
+    ISOCHOR_REQUIRE(coarse.size() == model.patches.size(), coarse.size(), model.patches.size());
+  }
+
+  ContinuityRows run(const std::vector<SmoothRelation>& relations) {
+    for (int k = 0; k < static_cast<int>(relations.size()); ++k) {
+      const SmoothRelation& relation = relations[static_cast<size_t>(k)];
+      if (!add_line(k, relation)) result_.inexpressible.push_back(k);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  // A strip of a line: patch, direction across, whether it runs against the first strip.
+  struct Place {
+    int patch = 0;
+    Direction across = Direction::kU;
+    bool flipped = false;
+  };
+
+  std::vector<Place> places(const SmoothRelation& relation) const {
+    if (relation.kind != Kind::kJoin) return {{relation.patch, relation.across, false}};
+    const Join& join = model_.joins[static_cast<size_t>(relation.join)];
+    return {{join.a.patch, across_direction(join.a.side), false},
+            {join.b.patch, across_direction(join.b.side), join.opposed}};
+  }
+
+  const KnotVector& fine(int q, Direction direction) const {
+    return isochor::knots_of(model_.patches[static_cast<size_t>(q)], direction);
+  }
+  const KnotVector& coarse(int q, Direction direction) const {
+    return knots_of(coarse_[static_cast<size_t>(q)], direction);
+  }
+
+  // Coarse rows that wrap: row i is row i - period from `period` on; 0 when they do not.
+  int period(int q, Direction direction) const {
+    const int wrapped = wrapped_rows(model_.patches[static_cast<size_t>(q)], direction, classes_);
+    return wrapped > 0 ? coarse(q, direction).size() - wrapped : 0;
+  }
+
+  const ExactMap& map(int q, Direction direction) {
+    auto& entry = maps_[{q, direction}];
+    if (entry.empty()) {
+      entry = period(q, direction) > 0
+                  ? exact_wrapped_insertion_map(coarse(q, direction), fine(q, direction))
+                  : exact_insertion_map(coarse(q, direction), fine(q, direction));
+    }
+    return entry;
+  }
+
+  // g = k U, without what is noise; the sum stays exactly zero.
+  LineEquation coarsened(const std::vector<Place>& places, const LineEquation& equation) {
+    std::map<std::pair<int, int>, std::pair<Rational, Rational>> sums;  // with sizes
+    for (const LineTerm& term : equation) {
+      const Place& place = places[static_cast<size_t>(term.strip)];
+      const int wrap = period(place.patch, place.across);
+      const ExactMapRow& row = map(place.patch, place.across)[static_cast<size_t>(term.row)];
+      for (size_t k = 0; k < row.coefficients.size(); ++k) {
+        int column = row.first + static_cast<int>(k);
+        if (wrap > 0 && column >= wrap) column -= wrap;
+        auto& [sum, size] = sums[boundary_merged(places, term.strip, column)];
+        const Rational value = term.value * row.coefficients[k];
+        sum += value;
+        size += value.abs();
+      }
+    }
+    Rational largest_size;
+    for (const auto& [at, sum] : sums) largest_size = std::max(largest_size, sum.second);
+    const Rational noise = largest_size * Rational(kSameRow);
+    LineEquation result;
+    Rational dropped;
+    for (const auto& [at, sum] : sums) {
+      if (sum.first.abs() > noise) {
+        result.push_back({at.first, at.second, sum.first});
+      } else {
+        dropped += sum.first;
+      }
+    }
+    if (!result.empty() && !dropped.is_zero()) {
+      std::max_element(result.begin(), result.end(), [](const LineTerm& a, const LineTerm& b) {
+        return a.value.abs() < b.value.abs();
+      })->value += dropped;
+    }
+    return result;
+  }
+
+  // The boundary rows of two joined strips are one.
+  std::pair<int, int> boundary_merged(const std::vector<Place>& places, int strip, int column) {
+    if (strip == 0 || join_ == nullptr) return {strip, column};
+    const auto last = [&](const Place& place, const SideRef& ref) {
+      return is_begin_side(ref.side) ? 0 : coarse(place.patch, place.across).size() - 1;
+    };
+    if (column != last(places[1], join_->b)) return {strip, column};
+    return {0, last(places[0], join_->a)};
+  }
+
+  // From the depth of the first strip to the depth of the second, so that equal equations of
+  // neighbouring lines read the same (or reversed).
+  void order_across(LineEquation* equation) const {
+    if (join_ == nullptr) return;
+    const bool first_descends = is_begin_side(join_->a.side);
+    const bool second_descends = !is_begin_side(join_->b.side);
+    std::sort(equation->begin(), equation->end(), [&](const LineTerm& a, const LineTerm& b) {
+      if (a.strip != b.strip) return a.strip < b.strip;
+      return (a.strip == 0 ? first_descends : second_descends) ? a.row > b.row : a.row < b.row;
+    });
+  }
+
+  bool add_line(int k, const SmoothRelation& relation) {
+    join_ =
+        relation.kind == Kind::kJoin ? &model_.joins[static_cast<size_t>(relation.join)] : nullptr;
+    const std::vector<Place> at = places(relation);
+    const KnotVector& along = coarse(at[0].patch, other(at[0].across));
+    if (at.size() == 2 &&
+        !same_knots(along, coarse(at[1].patch, other(at[1].across)), at[1].flipped)) {
+      return false;
+    }
+    const int wrap = period(at[0].patch, other(at[0].across));
+    const int count = wrap > 0 ? wrap : along.size();
+    const double noise = std::max(kSameRow, 4.0 * relation.residual);
+    std::vector<ContinuityRow> rows;
+    for (const std::vector<LineEquation>& equations : relation.equations) {
+      if (equations.size() > 1 && !same_along(at)) return false;
+      std::vector<LineEquation> coarse_equations;
+      for (const LineEquation& equation : equations) {
+        LineEquation shared = coarsened(at, equation);
+        order_across(&shared);
+        if (!shared.empty()) pool_.share(&shared, noise);
+        coarse_equations.push_back(std::move(shared));
+      }
+      for (int b = 0; b < count; ++b) {
+        const auto which = coarse_equations.size() > 1 ? static_cast<size_t>(b) : 0;
+        ContinuityRow row = row_at(k, at, coarse_equations[which], b);
+        if (!row.terms.empty()) rows.push_back(std::move(row));
+      }
+    }
+    result_.rows.insert(result_.rows.end(), rows.begin(), rows.end());
+    return true;
+  }
+
+  // No strip is coarsened along the line.
+  bool same_along(const std::vector<Place>& at) const {
+    return std::all_of(at.begin(), at.end(), [&](const Place& place) {
+      return coarse(place.patch, other(place.across)) == fine(place.patch, other(place.across));
+    });
+  }
+
+  ContinuityRow row_at(int k, const std::vector<Place>& at, const LineEquation& equation,
+                       int b) const {
+    ContinuityRow row;
+    row.relation = k;
+    for (const LineTerm& term : equation) {
+      const Place& place = at[static_cast<size_t>(term.strip)];
+      const int along = place.flipped ? coarse(place.patch, other(place.across)).size() - 1 - b : b;
+      const bool across_u = place.across == Direction::kU;
+      row.terms.push_back(
+          {place.patch, across_u ? term.row : along, across_u ? along : term.row, term.value});
+    }
+    return row;
+  }
+
+  const PatchModel& model_;
+  const std::vector<CoarseKnots>& coarse_;
+  PointClasses classes_;
+  std::map<std::pair<int, Direction>, ExactMap> maps_;
+  EquationPool pool_;
+  const Join* join_ = nullptr;  // of the relation at hand, for joins
+  ContinuityRows result_;
+};
+
+}  // namespace
+
+ContinuityRows continuity_rows(const PatchModel& model,
+                               const std::vector<SmoothRelation>& relations,
+                               const std::vector<CoarseKnots>& coarse) {
+  return RowMaker(model, coarse).run(relations);
+}
+
+}  // namespace isochor

@@ -1,0 +1,382 @@
+#include "isochor/bspline/line_strips.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "isochor/base/tolerance.h"
+#include "isochor/bspline/exact_refinement.h"
+#include "isochor/bspline/refinement.h"
+#include "isochor/exact/simplest_rational.h"
+
+namespace isochor::internal {
+namespace {
+
+const Patch& patch_of(const PatchModel& model, int q) {
+  return model.patches[static_cast<size_t>(q)];
+}
+
+// The strip that ends (below) or begins at `knot`; `backwards`: n runs against the parameter.
+Strip make_strip(const PatchModel& model, int patch, Direction across, double knot, bool below,
+                 bool backwards) {
+  const KnotVector& knots = knots_of(patch_of(model, patch), across);
+  int span = knots.spans().front();
+  for (int k : knots.spans()) {
+    if (below ? knots[k] < knot : knots[k] <= knot) span = k;
+  }
+  Strip strip;
+  strip.patch = patch;
+  strip.across = across;
+  strip.first = span - knots.degree();
+  for (int r = 0; r < 3; ++r) {
+    auto& shares = strip.derivatives[static_cast<size_t>(r)];
+    shares = exact_derivatives(knots, span, knot, r);
+    if (backwards && r == 1) {
+      for (Rational& share : shares) share = -share;
+    }
+  }
+  return strip;
+}
+
+Strip side_strip(const PatchModel& model, const SideRef& ref, bool incoming) {
+  const Direction across = across_direction(ref.side);
+  const KnotVector& knots = knots_of(patch_of(model, ref.patch), across);
+  const bool begin = is_begin_side(ref.side);
+  return make_strip(model, ref.patch, across, begin ? knots.begin() : knots.end(), !begin,
+                    begin == incoming);
+}
+
+double weight_at(const Patch& patch, const std::pair<int, int>& at) {
+  return patch.weights.empty()
+             ? 1.0
+             : patch.weights[static_cast<size_t>(at.first) * static_cast<size_t>(patch.v_size()) +
+                             static_cast<size_t>(at.second)];
+}
+
+double weight(const PatchModel& model, const Strip& strip, int i, int j) {
+  const Patch& patch = patch_of(model, strip.patch);
+  return weight_at(patch, grid_index(patch, strip, strip.first + i, j));
+}
+
+int rows_of(const Strip& strip) { return static_cast<int>(strip.derivatives[0].size()); }
+
+// The rows of a strip that have a share in derivatives up to `order`.
+bool matters(const Strip& strip, int i, int order) {
+  for (int r = 0; r <= order; ++r) {
+    if (!strip.derivatives[static_cast<size_t>(r)][static_cast<size_t>(i)].is_zero()) return true;
+  }
+  return false;
+}
+
+// Whether w_ij = a_i b_j for the rows that matter, to rounding; b from the curve's own weights.
+bool weights_separate(const PatchModel& model, const Line& line, int order) {
+  std::vector<double> along;
+  for (const Strip& strip : line.strips) {
+    for (int i = 0; i < rows_of(strip); ++i) {
+      if (!matters(strip, i, order)) continue;
+      for (int j = 0; j < line.count; ++j) {
+        const double ratio = weight(model, strip, i, j) / weight(model, strip, i, 0);
+        if (static_cast<int>(along.size()) < line.count) {
+          along.push_back(ratio);
+          continue;
+        }
+        const double reference = along[static_cast<size_t>(j)];
+        if (std::abs(ratio - reference) > kSeparateWeights * reference) return false;
+      }
+    }
+  }
+  return true;
+}
+
+// Derivatives of the pole rows at one j, with the curve's own point taken off: V_r, order 1 and 2.
+struct Derivatives {
+  Vec3 value[2] = {Vec3::Zero(), Vec3::Zero()};
+  double size[2] = {0.0, 0.0};  // of their terms
+};
+
+Derivatives derivatives_at(const PatchModel& model, const Strip& strip, int j, double scale) {
+  const Patch& patch = patch_of(model, strip.patch);
+  std::vector<Vec3> poles;
+  std::vector<double> weights;
+  Vec3 sum = Vec3::Zero();
+  double total = 0.0;
+  for (int i = 0; i < rows_of(strip); ++i) {
+    const auto at = grid_index(patch, strip, strip.first + i, j);
+    poles.push_back(model.points[static_cast<size_t>(patch.point(at.first, at.second))]);
+    weights.push_back(weight_at(patch, at) * scale);
+    const double share = strip.derivatives[0][static_cast<size_t>(i)].to_double() * weights.back();
+    sum += share * (poles.back() - poles.front());
+    total += share;
+  }
+  const Vec3 point = poles.front() + sum / total;
+  Derivatives result;
+  for (size_t r = 0; r < 2; ++r) {
+    for (size_t i = 0; i < poles.size(); ++i) {
+      const Vec3 term = strip.derivatives[r + 1][i].to_double() * weights[i] * (poles[i] - point);
+      result.value[r] += term;
+      result.size[r] += term.norm();
+    }
+  }
+  return result;
+}
+
+// Least squares of above = factor * below, over all poles along the line.
+double fitted_factor(const std::vector<Vec3>& above, const std::vector<Vec3>& below) {
+  double both = 0.0;
+  double square = 0.0;
+  for (size_t j = 0; j < above.size(); ++j) {
+    both += above[j].dot(below[j]);
+    square += below[j].squaredNorm();
+  }
+  return square > 0.0 ? both / square : 0.0;
+}
+
+// The simplest rational within `noise` of a measured value, a known one first.
+Rational settled(double value, double noise, std::vector<Rational>* known) {
+  const Rational low = Rational(value) - Rational(noise);
+  const Rational high = Rational(value) + Rational(noise);
+  for (const Rational& factor : *known) {
+    if (low <= factor && factor <= high) return factor;
+  }
+  known->push_back(simplest_between(low, high));
+  return known->back();
+}
+
+// Largest |above - factor * below| and largest size.
+struct Misfit {
+  double absolute = 0.0;
+  double size = 0.0;
+  double relative() const { return size > 0.0 ? absolute / size : 0.0; }
+};
+
+class Fit {
+ public:
+  Fit(const PatchModel& model, const Line& line) {
+    // The second strip's weights may have another common factor.
+    const double scale =
+        boundary_weight(model, line.strips[0]) / boundary_weight(model, line.strips[1]);
+    for (int j = 0; j < line.count; ++j) {
+      below_.push_back(derivatives_at(model, line.strips[0], j, 1.0));
+      above_.push_back(derivatives_at(model, line.strips[1], j, scale));
+    }
+  }
+
+  static double boundary_weight(const PatchModel& model, const Strip& strip) {
+    double total = 0.0;
+    for (int i = 0; i < rows_of(strip); ++i) {
+      total +=
+          strip.derivatives[0][static_cast<size_t>(i)].to_double() * weight(model, strip, i, 0);
+    }
+    return total;
+  }
+
+  bool run(SmoothRelation* relation, std::vector<Rational>* known) const {
+    const std::vector<Vec3> below = values(below_, 0);
+    const double raw = fitted_factor(values(above_, 0), below);
+    if (!(raw > 0.0) || !std::isfinite(raw)) return false;
+    const double first = misfit(0, raw, 0.0).relative();
+    if (!(first <= kSmoothResidual)) return false;
+    const Rational lambda = settled(raw, raw * std::max(kFactorNoise, first), known);
+    relation->residual = misfit(0, lambda.to_double(), 0.0).relative();
+    relation->lambda = lambda;
+    relation->mu = Rational();
+    return relation->order < 2 || run_second(relation, known, below);
+  }
+
+ private:
+  bool run_second(SmoothRelation* relation, std::vector<Rational>* known,
+                  const std::vector<Vec3>& below) const {
+    const double lambda = relation->lambda.to_double();
+    std::vector<Vec3> rest;
+    for (size_t j = 0; j < above_.size(); ++j) {
+      rest.push_back(above_[j].value[1] - lambda * lambda * below_[j].value[1]);
+    }
+    const double raw = fitted_factor(rest, below);
+    if (!std::isfinite(raw)) return false;
+    const Misfit second = misfit(1, lambda * lambda, raw);
+    if (!(second.relative() <= kSmoothResidual)) return false;
+    double speed = 0.0;
+    for (const Vec3& v : below) speed = std::max(speed, v.norm());
+    const double noise = std::max(kFactorNoise, second.relative()) * second.size / speed;
+    relation->mu = settled(raw, noise, known);
+    relation->residual = std::max(relation->residual,
+                                  misfit(1, lambda * lambda, relation->mu.to_double()).relative());
+    return true;
+  }
+
+  static std::vector<Vec3> values(const std::vector<Derivatives>& all, size_t r) {
+    std::vector<Vec3> result;
+    for (const Derivatives& d : all) result.push_back(d.value[r]);
+    return result;
+  }
+
+  Misfit misfit(size_t r, double factor, double mu) const {
+    Misfit result;
+    for (size_t j = 0; j < above_.size(); ++j) {
+      const Vec3 rest = above_[j].value[r] - factor * below_[j].value[r] - mu * below_[j].value[0];
+      result.absolute = std::max(result.absolute, rest.norm());
+      result.size = std::max({result.size, above_[j].size[r], factor * below_[j].size[r]});
+    }
+    return result;
+  }
+
+  std::vector<Derivatives> below_, above_;
+};
+
+// Collects sum value * delta of (strip, row), rows that are one and the same added up.
+class EquationTerms {
+ public:
+  explicit EquationTerms(const Line& line) : line_(line) {}
+
+  void add(int strip, int row, const Rational& value) {
+    if (value.is_zero()) return;
+    if (line_.boundary[0] < 0) strip = 0;
+    if (strip == 1 && row == line_.boundary[1]) {
+      strip = 0;
+      row = line_.boundary[0];
+    }
+    if (line_.period > 0 && row >= line_.period) row -= line_.period;
+    terms_[{strip, row}] += value;
+  }
+
+  LineEquation take() const {
+    LineEquation equation;
+    for (const auto& [at, value] : terms_) {
+      if (!value.is_zero()) equation.push_back({at.first, at.second, value});
+    }
+    return equation;
+  }
+
+ private:
+  const Line& line_;
+  std::map<std::pair<int, int>, Rational> terms_;
+};
+
+// The equation of order r at j, and the factor of H itself that makes its sum zero.
+struct Balanced {
+  LineEquation equation;
+  double own_factor = 0.0;  // rho or sigma
+  double size = 0.0;        // of the terms that it balances
+};
+
+Balanced balanced_equation(const PatchModel& model, const Line& line, int r, int j,
+                           const Rational& lambda, const Rational& mu) {
+  EquationTerms terms(line);
+  std::vector<Rational> weights[2];
+  Rational own[2];
+  for (size_t s = 0; s < 2; ++s) {
+    const Strip& strip = line.strips[s];
+    for (int i = 0; i < rows_of(strip); ++i) {
+      weights[s].emplace_back(weight(model, strip, i, j));
+      own[s] += strip.derivatives[0][static_cast<size_t>(i)] * weights[s].back();
+    }
+  }
+  const Rational scale = own[0] / own[1];
+  Rational sum;
+  Rational size;
+  const auto add = [&](size_t s, int order, const Rational& factor) {
+    const Strip& strip = line.strips[s];
+    for (size_t i = 0; i < weights[s].size(); ++i) {
+      const Rational value =
+          factor * strip.derivatives[static_cast<size_t>(order)][i] * weights[s][i];
+      terms.add(static_cast<int>(s), strip.first + static_cast<int>(i), value);
+      sum += value;
+      size += value.abs();
+    }
+  };
+  add(1, r, scale);
+  add(0, r, r == 1 ? -lambda : -(lambda * lambda));
+  if (r == 2) add(0, 1, -mu);
+  const Rational factor = sum / own[0];
+  Balanced result;
+  result.size = (size / own[0]).to_double();
+  result.own_factor = factor.to_double();
+  if (!factor.is_zero()) add(0, 0, -factor);
+  result.equation = terms.take();
+  return result;
+}
+
+// Without a common b_j the relation of W must hold with one rho for all j, else it is not smooth.
+bool add_equations(const PatchModel& model, const Line& line, bool separate,
+                   SmoothRelation* relation) {
+  for (int r = 1; r <= relation->order; ++r) {
+    std::vector<LineEquation> equations;
+    double low = 0.0;
+    double high = 0.0;
+    double size = 0.0;
+    bool any = false;
+    for (int j = 0; j < (separate ? 1 : line.count); ++j) {
+      Balanced at = balanced_equation(model, line, r, j, relation->lambda, relation->mu);
+      low = j == 0 ? at.own_factor : std::min(low, at.own_factor);
+      high = j == 0 ? at.own_factor : std::max(high, at.own_factor);
+      size = std::max(size, at.size);
+      any = any || !at.equation.empty();
+      equations.push_back(std::move(at.equation));
+    }
+    if (high - low > kSmoothResidual * size) return false;
+    if (any) relation->equations.push_back(std::move(equations));
+  }
+  return true;
+}
+
+}  // namespace
+
+std::pair<int, int> grid_index(const Patch& patch, const Strip& strip, int row, int j) {
+  if (strip.across == Direction::kU) {
+    return {row, strip.flipped ? patch.v_size() - 1 - j : j};
+  }
+  return {strip.flipped ? patch.u_size() - 1 - j : j, row};
+}
+
+Line join_line(const PatchModel& model, const Join& join) {
+  Line line;
+  line.strips[0] = side_strip(model, join.a, true);
+  line.strips[1] = side_strip(model, join.b, false);
+  line.strips[1].flipped = join.opposed;
+  line.count = knots_of(patch_of(model, join.a.patch), running_direction(join.a.side)).size();
+  const SideRef* sides[2] = {&join.a, &join.b};
+  for (size_t s = 0; s < 2; ++s) {
+    const int rows =
+        knots_of(patch_of(model, sides[s]->patch), across_direction(sides[s]->side)).size();
+    line.boundary[s] = is_begin_side(sides[s]->side) ? 0 : rows - 1;
+  }
+  return line;
+}
+
+Line wrap_line(const PatchModel& model, const Join& join) {
+  const Direction across = across_direction(join.a.side);
+  const KnotVector& knots = knots_of(patch_of(model, join.a.patch), across);
+  Line line;
+  line.strips[0] = make_strip(model, join.a.patch, across, knots.end(), true, false);
+  line.strips[1] = make_strip(model, join.a.patch, across, knots.begin(), false, false);
+  line.count = knots_of(patch_of(model, join.a.patch), running_direction(join.a.side)).size();
+  line.period = knots.size() - wrapped_poles(knots);
+  return line;
+}
+
+Line knot_line(const PatchModel& model, int patch, Direction across, double knot, int period) {
+  Line line;
+  line.strips[0] = make_strip(model, patch, across, knot, true, false);
+  line.strips[1] = make_strip(model, patch, across, knot, false, false);
+  line.count =
+      knots_of(patch_of(model, patch), across == Direction::kU ? Direction::kV : Direction::kU)
+          .size();
+  line.period = period;
+  return line;
+}
+
+bool fit_relation(const PatchModel& model, const Line& line, SmoothRelation* relation,
+                  std::vector<Rational>* known_factors) {
+  SmoothRelation fitted = *relation;
+  std::vector<Rational> known = *known_factors;
+  const Fit fit(model, line);
+  if (!fit.run(&fitted, &known)) return false;
+  const bool separate = weights_separate(model, line, fitted.order);
+  if (!add_equations(model, line, separate, &fitted)) return false;
+  *relation = std::move(fitted);
+  *known_factors = std::move(known);
+  return true;
+}
+
+}  // namespace isochor::internal

@@ -1,0 +1,106 @@
+// What keeps the skin smooth: linear equations on displacements.
+//
+// Symbols: H = (N, W) = (sum w p B, sum w B) is the surface in homogeneous coordinates (W = 1
+// without weights). Two strips of surface meet along a curve with a common basis b_j along it: at a
+// join, an interior knot line, or a seam that wraps. n is the parameter across, running from the
+// first strip into the second; - and + mark derivatives taken in the first and in the second. The
+// pole index across is i, along it is j.
+//
+// G1:  H_n+  = lambda H_n- + rho H             G2: H_nn+ = lambda^2 H_nn- + mu H_n- + sigma H
+// with constant lambda, mu, rho, sigma. A displacement whose numerator sum w delta B obeys the same
+// relations leaves their residuals as they are, and with them the angle and the curvature jump.
+// Coefficient by coefficient in b_j that is one equation per j and relation:
+//     sum_i k_i w_ij delta_ij = 0.
+// lambda and mu are geometry: measured on the poles and taken as the simplest rationals within the
+// noise. rho and sigma follow from the weights, so that sum_i k_i w_ij = 0 exactly.
+//
+// At a pole with a tangent plane the second row must stay an affine image of itself (see
+// continuity_rows).
+//
+// Laws:
+//  (1) translations fulfil every row exactly; linear maps of the model to its residual;
+//  (2) a displacement that fulfils the rows leaves the angle and (order 2) the jump of the normal
+//      curvature across the curve as they were, up to rounding; at a pole the tangent plane's
+//      angle;
+//  (3) rows that depend on each other in exact arithmetic do so as stored: factors, knots and
+//      weights that agree within noise give identical rows;
+//  (4) where no constant factor fits within kSmoothResidual there is no relation.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "isochor/bspline/patch_model.h"
+#include "isochor/bspline/smoothness.h"
+#include "isochor/exact/rational.h"
+
+namespace isochor {
+
+// One coefficient of an equation across a line: of pole row `row` (counted in the patch's across
+// direction) of one of the two strips.
+struct LineTerm {
+  int strip = 0;  // 0: the first, 1: the second
+  int row = 0;
+  Rational value;
+};
+using LineEquation = std::vector<LineTerm>;
+
+struct SmoothRelation {
+  enum class Kind { kJoin, kKnotLine, kWrap, kPole };
+  Kind kind = Kind::kJoin;
+  int join = -1;   // kJoin, kWrap: index into model.joins
+  int patch = -1;  // kKnotLine, kWrap: the patch; the line is `across` = knot
+  Direction across = Direction::kU;
+  double knot = 0.0;
+  std::vector<SideRef> sides;  // kJoin: its two sides; kPole: all collapsed sides at the pole
+  int order = 1;               // 1: tangents, 2: curvature too (seams: as protected_order)
+  Rational lambda = Rational(1), mu;
+  double residual = 0.0;  // of the worse of the relations, as a part of its terms
+  std::string text;       // "face:3 and face:4 meet smoothly (G1)"
+
+  // For each order that the basis does not keep by itself, ascending: one equation for all j when
+  // the weights separate into a product near the line (always without weights), else one for each j
+  // along the first strip. Empty for poles.
+  std::vector<std::vector<LineEquation>> equations;
+};
+
+// The relations that fit: for each smooth join that matches, each knot line and wrap that is
+// smoother than its basis, each pole with a tangent plane. Uses model.joins as they are.
+std::vector<SmoothRelation> smooth_relations(const PatchModel& model);
+
+// The points that have to stay when the relation has no rows (what derive_locks locks for it).
+std::vector<int> points_locking(const PatchModel& model, const SmoothRelation& relation);
+
+// The grid of coarse coefficients of one patch.
+struct CoarseKnots {
+  KnotVector u, v;
+};
+
+struct GridTerm {
+  int patch = 0, i = 0, j = 0;  // index on the coarse grid of the patch
+  Rational value;
+};
+
+// sum value * displacement = 0, on each axis.
+struct ContinuityRow {
+  std::vector<GridTerm> terms;
+  int relation = 0;  // index into the relations
+};
+
+struct ContinuityRows {
+  std::vector<ContinuityRow> rows;
+  std::vector<int> inexpressible;  // relations that this scale cannot state: lock them
+};
+
+// The rows on coarse displacements c, with fine displacements delta = U c V^T. `coarse`: for each
+// patch its own knots or a subset of them (wrapped ones rebuilt as by keep_flagged).
+//
+// With g_a = sum_i k_i w_i U_ia the fine rows hold for all j when g . c_b = 0 for each coarse b
+// along the line: one row for each b. Relations that the coarse functions fulfil by themselves give
+// none. Where weights do not separate, the line must not be coarsened along its own direction.
+// PreconditionError when `coarse` does not fit the model.
+ContinuityRows continuity_rows(const PatchModel& model,
+                               const std::vector<SmoothRelation>& relations,
+                               const std::vector<CoarseKnots>& coarse);
+
+}  // namespace isochor
