@@ -106,7 +106,7 @@ inline void expect_all_right(int systems, unsigned seed) {
   TrialCounts counts;
   for (int i = 0; i < systems; ++i) {
     const auto kind = static_cast<SystemKind>(i % kSystemKinds);
-    const int largest = i % 100 < 90 ? 10 : (i % 100 < 99 ? 25 : 60);
+    const int largest = i % 100 < 93 ? 10 : (i % 100 < 99 ? 25 : 40);
     const RandomSystem system = generator.next(kind, largest);
     SCOPED_TRACE(::testing::Message() << "seed " << seed << ", system " << i);
     judge(system, generator, counts);

@@ -5,7 +5,7 @@
 // multipliers y, y^T R_ED = 0, are unique up to sign once they are integers without a common
 // factor. "First" is meant in the order of `precedence`, ties broken by index.
 //
-// Laws (tests of those names in tests/ecles/analysis_test.cpp):
+// Laws (tests: analysis_test, verdicts_test and spline_verdicts_test in tests/ecles):
 //  (1) basis:      `independent` is the first basis of E's rows on D: a row is left out exactly
 //  when
 //                  it depends on rows that come before it;
