@@ -62,4 +62,9 @@ struct RenderOptions {
 };
 int run_render(const RenderOptions& options, const Common& common);
 
+struct SolveOptions {
+  std::string problem, output;
+};
+int run_solve(const SolveOptions& options, const Common& common);
+
 }  // namespace isochor::app

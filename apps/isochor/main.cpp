@@ -28,7 +28,7 @@ void add_common(CLI::App& app, Common& common) {
 
 // Commands of CONTRACT that this version does not have: refused by name, not as a typo.
 void add_missing(CLI::App& app, std::function<int()>& action) {
-  for (const char* name : {"solve", "deform", "sculpt", "studio"}) {
+  for (const char* name : {"deform", "sculpt", "studio"}) {
     CLI::App* sub = app.add_subcommand(name, "(not available in this version)");
     sub->prefix_command();
     sub->callback([name, &action] {
@@ -109,6 +109,14 @@ int run(int argc, char** argv) {
   sub->add_option("--compare", render.compare, "colour by the deviation from OTHER");
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_render(render, common); }; });
+
+  SolveOptions solve;
+  sub = app.add_subcommand("solve", "edit parameters under linear constraints, exactly");
+  sub->add_option("PROBLEM", solve.problem, "parameters, constraints, anchors (JSON)")->required();
+  sub->add_option("-o,--output", solve.output,
+                  "solution to write (JSON), also when the answer is no");
+  add_common(*sub, common);
+  sub->callback([&] { action = [&] { return run_solve(solve, common); }; });
 
   add_missing(app, action);
 

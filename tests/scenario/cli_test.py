@@ -445,7 +445,8 @@ class Usage(Scenario):
 
     def test_help_and_version(self):
         self.assertRegex(isochor("--version").stdout, r"^isochor \d+\.\d+\.\d+\n$")
-        for command in ("info", "volume", "suggest", "edit", "check", "convert", "render"):
+        for command in ("info", "volume", "suggest", "edit", "check", "convert", "render",
+                        "solve"):
             done = isochor(command, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn("--json", done.stdout)
