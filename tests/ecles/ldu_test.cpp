@@ -169,6 +169,32 @@ TEST(Ldu, TurnerEntriesAreMinors) {
   }
 }
 
+// Section 8.1 says that D L^-1 is an integer matrix, whatever the simplification.
+TEST(Ldu, DiagonalOverLowerIsIntegerButByGcd) {
+  std::mt19937_64 random(46);
+  int fractional_by_gcd = 0;
+  for (int round = 0; round < 40; ++round) {
+    const IntegerMatrix a = test::random_matrix(random, {4, 4, -1, 1.0, 8});
+    for (const Simplification simplification : kAll) {
+      const LduFactoring factoring = factor_ldu(a, simplification);
+      RationalMatrix inverse = RationalMatrix(factoring.lower).inverse().value();
+      bool integral = true;
+      for (int k = 0; k < 4; ++k) {
+        for (int s = 0; s < 4; ++s) {
+          inverse.at(k, s) *= factoring.diagonal[static_cast<size_t>(k)];
+          integral = integral && inverse.at(k, s).denominator() == 1;
+        }
+      }
+      if (simplification == Simplification::kGcd) {
+        fractional_by_gcd += integral ? 0 : 1;
+      } else {
+        EXPECT_TRUE(integral);
+      }
+    }
+  }
+  EXPECT_GT(fractional_by_gcd, 30);
+}
+
 TEST(Ldu, PivotIsTheFirstLeastEntry) {
   // Three entries of magnitude 2; the first row by row is at (0, 2).
   const LduFactoring factoring =
