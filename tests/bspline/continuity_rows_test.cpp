@@ -74,11 +74,95 @@ TEST(ContinuityRows, TwoPatchesOfACut) {
   EXPECT_EQ(expect_rows_keep_the_skin(model, coarse, 0.1), (9 - 2) * v.size());
 }
 
-TEST(ContinuityRows, RationalTorus) {
-  PatchModel model = testing::make_rational_torus(2.0, 0.5);
+// Rank over the rationals as the tensor product says: the rows of crossing lines depend on each
+// other exactly, whatever rounding did to points and knots.
+TEST(ContinuityRows, FourPatchesAtACorner) {
+  std::mt19937 random(41);
+  const KnotVector u = testing::random_clamped(random, 4, 3, 1);
+  const KnotVector v = testing::random_clamped(random, 3, 2, 1);
+  PatchModel model = testing::make_separate_model({testing::random_surface(random, u, v, false)});
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.7, Vec3(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+  testing::transform(model, turn);
+  model = testing::cut_apart(model, {u.interior()[1]}, {v.interior()[0]});
+  ASSERT_EQ(model.patches.size(), 4u);
+  for (size_t q : {2u, 3u}) testing::stretch(model.patches[q], Direction::kU, 3.0);
+  for (size_t q : {1u, 3u}) testing::stretch(model.patches[q], Direction::kV, 0.7);
   model.joins = find_joins(model);
-  // 8 x 8 poles, 4 x 4 free: each circle of eight poles gives up one for each of its four lines.
-  EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.05), 16);
+  ASSERT_EQ(model.joins.size(), 4u);
+  const auto relations = smooth_relations(model);
+  ASSERT_EQ(relations.size(), 4u);
+  for (const SmoothRelation& relation : relations) EXPECT_EQ(relation.order, 2);
+  // Distinct columns and rows: knots of full multiplicity at the cuts, less two each.
+  const int columns = u.size() + 3;
+  const int rows = v.size() + 2;
+  EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.1), (columns - 2) * (rows - 2));
+}
+
+TEST(ContinuityRows, RationalTorus) {
+  for (bool four : {false, true}) {
+    PatchModel model = testing::make_rational_torus(2.0, 0.5);
+    model.joins = find_joins(model);
+    if (four) model = testing::cut_apart(model, {1.0, 2.0, 3.0}, {2.0});
+    SCOPED_TRACE(model.patches.size());
+    // 8 x 8 poles, 4 x 4 free: each circle of eight poles gives up one for each of its four lines.
+    EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.05), 16);
+  }
+}
+
+// A column of a cylinder of nine poles: four of eight are free.
+TEST(ContinuityRows, RationalCylinder) {
+  for (testing::Circle circle :
+       {testing::Circle::kQuadratic, testing::Circle::kCubic, testing::Circle::kPeriodic}) {
+    PatchModel model =
+        testing::make_revolved(KnotVector::uniform(1, 1), {{1.0, 0.0}, {1.0, 3.0}}, {}, circle);
+    model.joins = find_joins(model);
+    EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.1), 2 * 4);
+  }
+}
+
+// A pole has its point and two directions; the cylinder's two rings behind it four each, of which
+// the knot line takes one ring.
+TEST(ContinuityRows, NosesWithATangentPlane) {
+  for (testing::Circle circle :
+       {testing::Circle::kQuadratic, testing::Circle::kCubic, testing::Circle::kPeriodic}) {
+    SCOPED_TRACE(static_cast<int>(circle));
+    PatchModel model = testing::make_nose(1.0, 4.0, circle);
+    model.joins = find_joins(model);
+    EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.05), 3 + 3 * 4 - 4);
+  }
+}
+
+TEST(ContinuityRows, PolesClosedByOnePatchAndByFour) {
+  PatchModel sphere = testing::make_sphere(1.0);
+  sphere.joins = find_joins(sphere);
+  // Two poles with their planes; the equator lies between their rings.
+  EXPECT_EQ(expect_rows_keep_the_skin(sphere, finest_knots(sphere), 0.05), 6);
+  const PatchModel four = testing::cut_apart(sphere, {1.0, 2.0, 3.0}, {});
+  ASSERT_EQ(four.patches.size(), 4u);
+  EXPECT_EQ(expect_rows_keep_the_skin(four, finest_knots(four), 0.05), 6);
+}
+
+// Linear maps of the model fulfil the rows to rounding.
+TEST(ContinuityRows, LinearMapsFulfilTheRows) {
+  for (PatchModel model : {testing::make_sphere(1.0), testing::make_rational_torus(2.0, 0.5),
+                           testing::make_nose(1.0, 4.0, testing::Circle::kCubic)}) {
+    model.joins = find_joins(model);
+    Eigen::Matrix3d matrix;
+    matrix << 1.0, 0.3, -0.2, 0.1, 0.8, 0.5, -0.4, 0.2, 1.1;
+    const auto rows = continuity_rows(model, smooth_relations(model), finest_knots(model)).rows;
+    for (const ContinuityRow& row : rows) {
+      Vec3 sum = Vec3::Zero();
+      double size = 0.0;
+      for (const GridTerm& term : row.terms) {
+        const Patch& patch = model.patches[static_cast<size_t>(term.patch)];
+        const double value = term.value.to_double();
+        sum += value * (matrix * model.points[static_cast<size_t>(patch.point(term.i, term.j))]);
+        size += std::abs(value);
+      }
+      EXPECT_LT(sum.norm(), 1e-13 * size);
+    }
+  }
 }
 
 }  // namespace

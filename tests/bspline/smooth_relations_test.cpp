@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "isochor/bspline/continuity.h"
@@ -28,13 +29,6 @@ Rational ratio(long numerator, long denominator) {
   return Rational(Integer(numerator), Integer(denominator));
 }
 
-// The same patch with its u domain stretched.
-void stretch_u(Patch& patch, double factor) {
-  std::vector<double> knots = patch.u_knots.knots();
-  for (double& t : knots) t *= factor;
-  patch.u_knots = KnotVector(patch.u_knots.degree(), knots);
-}
-
 TEST(SmoothRelations, FactorsOfACutAreMeasuredRight) {
   std::mt19937 random(72);
   for (bool rational : {false, true}) {
@@ -49,7 +43,7 @@ TEST(SmoothRelations, FactorsOfACutAreMeasuredRight) {
       surface = Surface(u, v, surface.poles(), weights);
     }
     PatchModel model = cut_in_two(surface, u.interior()[2]);
-    stretch_u(model.patches[1], 4.0);
+    testing::stretch(model.patches[1], Direction::kU, 4.0);
     const auto relations = smooth_relations(model);
     ASSERT_EQ(relations.size(), 1u);
     EXPECT_EQ(relations[0].kind, Kind::kJoin);
@@ -179,6 +173,58 @@ TEST(SmoothRelations, KnotLinesAndTheSeamOfACircle) {
   const std::set<int> locked = locked_points(torus);
   EXPECT_TRUE(std::includes(locked.begin(), locked.end(), union_of_relations.begin(),
                             union_of_relations.end()));
+}
+
+TEST(SmoothRelations, WrapsOfPeriodicKnots) {
+  PatchModel nose = testing::make_nose(1.0, 4.0, testing::Circle::kPeriodic);
+  nose.joins = find_joins(nose);
+  const auto relations = smooth_relations(nose);
+  std::map<Kind, int> count;
+  for (const SmoothRelation& relation : relations) {
+    ++count[relation.kind];
+    if (relation.kind != Kind::kWrap) continue;
+    EXPECT_EQ(relation.text, "face:1 closes on itself smoothly (G1)");
+    EXPECT_EQ(relation.join, 0);
+    EXPECT_EQ(relation.order, 1);
+    ASSERT_EQ(relation.equations.size(), 1u);
+    ASSERT_EQ(relation.equations[0].size(), 1u);
+    EXPECT_EQ(relation.equations[0][0].size(), 3u) << "poles -1, 0 and 1 around the seam";
+  }
+  EXPECT_EQ(count[Kind::kWrap], 1);
+  EXPECT_EQ(count[Kind::kKnotLine], 4) << "three around, one along";
+  EXPECT_EQ(count[Kind::kPole], 1);
+  derive_locks(nose, relations);
+  EXPECT_THAT(nose.locks, IsEmpty());
+  // Without knots of full multiplicity nothing can break, and nothing is asked.
+  PatchModel torus = testing::make_periodic_torus(3, 3, 8, 9);
+  torus.joins = find_joins(torus);
+  EXPECT_THAT(smooth_relations(torus), IsEmpty());
+}
+
+TEST(SmoothRelations, PolesWithATangentPlane) {
+  PatchModel sphere = testing::make_sphere(1.0);
+  sphere.joins = find_joins(sphere);
+  std::vector<SmoothRelation> poles;
+  for (SmoothRelation& relation : smooth_relations(sphere)) {
+    if (relation.kind == Kind::kPole) poles.push_back(relation);
+  }
+  ASSERT_EQ(poles.size(), 2u);
+  EXPECT_EQ(poles[0].text,
+            "the point where side v0 of face:1 (\"sphere\") collapses has a tangent plane");
+  EXPECT_EQ(points_locking(sphere, poles[0]).size(), 9u);
+  // A cone's tip has none.
+  const PatchModel cone =
+      testing::make_revolved(KnotVector::uniform(1, 1), {{0.0, 0.0}, {1.0, 1.0}});
+  for (const SmoothRelation& relation : smooth_relations(cone)) {
+    EXPECT_NE(relation.kind, Kind::kPole);
+  }
+  // Nor has one whose second row is bent a little: smooth to the eye, but not to rows.
+  sphere.points[static_cast<size_t>(sphere.patches[0].point(2, 1))].z() += 1e-6;
+  int left = 0;
+  for (const SmoothRelation& relation : smooth_relations(sphere)) {
+    left += relation.kind == Kind::kPole;
+  }
+  EXPECT_EQ(left, 1);
 }
 
 }  // namespace

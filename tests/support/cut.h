@@ -1,4 +1,4 @@
-// A surface cut into patches that continue each other.
+// Patches cut into patches that continue each other.
 #pragma once
 
 #include <algorithm>
@@ -6,50 +6,95 @@
 #include <vector>
 
 #include "isochor/bspline/joins.h"
+#include "isochor/bspline/model_refinement.h"
 #include "isochor/bspline/refinement.h"
+#include "support/models.h"
 
 namespace isochor::testing {
 
-// A surface as two patches, "fore" and "aft", cut at a u knot by inserting it until it
-// interpolates; the cut shares its points. Joins are found and measured.
-inline PatchModel cut_in_two(const Surface& surface, double at) {
-  const int d = surface.u_knots().degree();
-  const int extra = d - surface.u_knots().multiplicity(at);
-  const Surface cut = refine(
-      surface, with_knots(surface.u_knots(), std::vector<double>(static_cast<size_t>(extra), at)),
-      surface.v_knots());
-  const auto& knots = cut.u_knots().knots();
-  const auto first = std::lower_bound(knots.begin(), knots.end(), at);
-  const int row = static_cast<int>(first - knots.begin()) - 1;
-  std::vector<double> low(knots.begin(), first + d);
-  low.push_back(at);
-  std::vector<double> high(first, knots.end());
-  high.insert(high.begin(), at);
-  PatchModel model;
-  model.points = cut.poles();
-  const int nv = cut.v_size();
-  const auto add = [&](const char* name, int from, int to, const std::vector<double>& u) {
-    Patch patch{name,
-                "face:" + std::to_string(model.patches.size() + 1),
-                KnotVector(d, u),
-                cut.v_knots(),
-                {},
-                {},
-                false,
-                {},
-                {}};
-    for (int i = from; i < to; ++i) {
-      for (int j = 0; j < nv; ++j) {
-        patch.points.push_back(i * nv + j);
-        if (cut.rational()) patch.weights.push_back(cut.weights()[cut.index(i, j)]);
-      }
-    }
-    model.patches.push_back(patch);
+// Inserts knots until each of the values has full multiplicity: splines interpolate there.
+inline KnotVector with_cuts(const KnotVector& knots, const std::vector<double>& cuts) {
+  std::vector<double> inserted;
+  for (double at : cuts) {
+    const int missing = knots.degree() - knots.multiplicity(at);
+    inserted.insert(inserted.end(), static_cast<size_t>(missing), at);
+  }
+  return with_knots(knots, inserted);
+}
+
+// The pole ranges [from, to] and knots of the pieces of a direction.
+struct Piece {
+  int from, to;
+  KnotVector knots;
+};
+inline std::vector<Piece> pieces_of(const KnotVector& knots, const std::vector<double>& cuts) {
+  const int d = knots.degree();
+  std::vector<Piece> pieces;
+  int from = 0;
+  const auto add = [&](int to) {
+    std::vector<double> own(knots.knots().begin() + from, knots.knots().begin() + to + d + 2);
+    // A cut has d copies; each of the two pieces has one more at its end.
+    if (from > 0) own.front() = own[1];
+    if (to < knots.size() - 1) own.back() = own[own.size() - 2];
+    pieces.push_back({from, to, KnotVector(d, own)});
+    from = to;
   };
-  add("fore", 0, row + 1, low);
-  add("aft", row, cut.u_size(), high);
+  for (double at : cuts) {
+    const auto first = std::lower_bound(knots.knots().begin(), knots.knots().end(), at);
+    add(static_cast<int>(first - knots.knots().begin()) - 1);
+  }
+  add(knots.size() - 1);
+  return pieces;
+}
+
+// The first patch cut at u and v knots, u-major, as "face:1", "face:2", ...; pieces share the
+// points of the cuts, and whatever the whole shared with itself. Joins are found and measured.
+inline PatchModel cut_apart(const PatchModel& whole, const std::vector<double>& u_cuts,
+                            const std::vector<double>& v_cuts) {
+  const Patch& old = whole.patches[0];
+  PatchModel refined = without_unused_points(
+      refine(whole, 0, with_cuts(old.u_knots, u_cuts), with_cuts(old.v_knots, v_cuts)));
+  const Patch patch = refined.patches[0];
+  PatchModel model = refined;
+  model.patches.clear();
+  model.joins.clear();
+  for (const Piece& u : pieces_of(patch.u_knots, u_cuts)) {
+    for (const Piece& v : pieces_of(patch.v_knots, v_cuts)) {
+      Patch piece = patch;
+      piece.name.clear();
+      piece.handle = "face:" + std::to_string(model.patches.size() + 1);
+      piece.u_knots = u.knots;
+      piece.v_knots = v.knots;
+      piece.points.clear();
+      piece.weights.clear();
+      for (int i = u.from; i <= u.to; ++i) {
+        for (int j = v.from; j <= v.to; ++j) {
+          piece.points.push_back(patch.point(i, j));
+          if (patch.weights.empty()) continue;
+          piece.weights.push_back(patch.weights[static_cast<size_t>(i * patch.v_size() + j)]);
+        }
+      }
+      model.patches.push_back(piece);
+    }
+  }
   model.joins = find_joins(model);
   return model;
+}
+
+// A surface as two patches, "fore" and "aft", cut at a u knot.
+inline PatchModel cut_in_two(const Surface& surface, double at) {
+  PatchModel model = cut_apart(make_separate_model({surface}), {at}, {});
+  model.patches[0].name = "fore";
+  model.patches[1].name = "aft";
+  return model;
+}
+
+// The same patch over a longer domain.
+inline void stretch(Patch& patch, Direction direction, double factor) {
+  KnotVector& knots = direction == Direction::kU ? patch.u_knots : patch.v_knots;
+  std::vector<double> values = knots.knots();
+  for (double& t : values) t *= factor;
+  knots = KnotVector(knots.degree(), values);
 }
 
 }  // namespace isochor::testing

@@ -76,9 +76,9 @@ class CoarseSpace {
     return row;
   }
 
-  // Fine poles that are one point move together.
+  // Fine poles that are one point move together, and coarse rows that wrap.
   std::vector<SparseRow> ties() const {
-    std::vector<SparseRow> rows;
+    std::vector<SparseRow> rows = wrap_ties();
     std::map<int, SparseRow> first_of;
     each_pole([&](int q, int i, int j, int c) {
       SparseRow row = fine_row(q, i, j);
@@ -127,6 +127,26 @@ class CoarseSpace {
   }
 
  private:
+  std::vector<SparseRow> wrap_ties() const {
+    std::vector<SparseRow> rows;
+    for (int q = 0; q < static_cast<int>(model_.patches.size()); ++q) {
+      const CoarseKnots& knots = coarse_[static_cast<size_t>(q)];
+      const Patch& patch = model_.patches[static_cast<size_t>(q)];
+      const int u = wrapped_rows(patch, Direction::kU, classes_);
+      const int v = wrapped_rows(patch, Direction::kV, classes_);
+      for (int i = 0; i < knots.u.size(); ++i) {
+        for (int j = 0; j < knots.v.size(); ++j) {
+          const int from_i = i < u ? knots.u.size() - u + i : i;
+          const int from_j = j < v ? knots.v.size() - v + j : j;
+          if (from_i == i && from_j == j) continue;
+          rows.push_back(
+              {{unknown(q, i, j), Rational(1)}, {unknown(q, from_i, from_j), Rational(-1)}});
+        }
+      }
+    }
+    return rows;
+  }
+
   template <typename Visit>
   void each_pole(Visit visit) const {
     for (int q = 0; q < static_cast<int>(model_.patches.size()); ++q) {

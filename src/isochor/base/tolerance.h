@@ -96,7 +96,7 @@ inline constexpr double kSmoothResidual = 1e-10;
 
 // A factor measured on poles that are doubles is taken as the simplest rational within this part of
 // itself (or within the residual, if that is larger). Dimensionless: some hundred roundings.
-inline constexpr double kFactorNoise = 1e-13;
+inline constexpr double kFactorNoise = 2e-14;
 
 // Weights near a line are products w_ij = a_i b_j when they differ from them by at most this part.
 // Dimensionless: products of written weights are rounded once or twice.

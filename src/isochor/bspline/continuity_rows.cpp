@@ -1,28 +1,18 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <utility>
 
-#include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
-#include "isochor/bspline/exact_refinement.h"
-#include "isochor/bspline/joins.h"
-#include "isochor/bspline/refinement.h"
+#include "isochor/bspline/coarse_grids.h"
+#include "isochor/bspline/pole_rows.h"
 #include "isochor/bspline/smooth_relations.h"
 
 namespace isochor {
 namespace {
 
+using internal::other;
 using Kind = SmoothRelation::Kind;
-
-Direction other(Direction direction) {
-  return direction == Direction::kU ? Direction::kV : Direction::kU;
-}
-
-const KnotVector& knots_of(const CoarseKnots& knots, Direction direction) {
-  return direction == Direction::kU ? knots.u : knots.v;
-}
 
 // The same degree and knots, mapped to [0, 1].
 bool same_knots(const KnotVector& a, const KnotVector& b, bool flipped) {
@@ -76,14 +66,19 @@ class EquationPool {
 class RowMaker {
  public:
   RowMaker(const PatchModel& model, const std::vector<CoarseKnots>& coarse)
-      : model_(model), coarse_(coarse), classes_(point_classes(model)) {
-    ISOCHOR_REQUIRE(coarse.size() == model.patches.size(), coarse.size(), model.patches.size());
-  }
+      : model_(model), grids_(model, coarse) {}
 
   ContinuityRows run(const std::vector<SmoothRelation>& relations) {
-    for (int k = 0; k < static_cast<int>(relations.size()); ++k) {
-      const SmoothRelation& relation = relations[static_cast<size_t>(k)];
-      if (!add_line(k, relation)) result_.inexpressible.push_back(k);
+    // Lines first: what poles ask for has to agree with them.
+    for (bool poles : {false, true}) {
+      for (int k = 0; k < static_cast<int>(relations.size()); ++k) {
+        const SmoothRelation& relation = relations[static_cast<size_t>(k)];
+        if ((relation.kind == Kind::kPole) != poles) continue;
+        const bool stated =
+            poles ? internal::add_pole_rows(model_, relation, k, &grids_, &result_.rows)
+                  : add_line(k, relation);
+        if (!stated) result_.inexpressible.push_back(k);
+      }
     }
     return std::move(result_);
   }
@@ -103,39 +98,15 @@ class RowMaker {
             {join.b.patch, across_direction(join.b.side), join.opposed}};
   }
 
-  const KnotVector& fine(int q, Direction direction) const {
-    return isochor::knots_of(model_.patches[static_cast<size_t>(q)], direction);
-  }
-  const KnotVector& coarse(int q, Direction direction) const {
-    return knots_of(coarse_[static_cast<size_t>(q)], direction);
-  }
-
-  // Coarse rows that wrap: row i is row i - period from `period` on; 0 when they do not.
-  int period(int q, Direction direction) const {
-    const int wrapped = wrapped_rows(model_.patches[static_cast<size_t>(q)], direction, classes_);
-    return wrapped > 0 ? coarse(q, direction).size() - wrapped : 0;
-  }
-
-  const ExactMap& map(int q, Direction direction) {
-    auto& entry = maps_[{q, direction}];
-    if (entry.empty()) {
-      entry = period(q, direction) > 0
-                  ? exact_wrapped_insertion_map(coarse(q, direction), fine(q, direction))
-                  : exact_insertion_map(coarse(q, direction), fine(q, direction));
-    }
-    return entry;
-  }
-
   // g = k U, without what is noise; the sum stays exactly zero.
   LineEquation coarsened(const std::vector<Place>& places, const LineEquation& equation) {
     std::map<std::pair<int, int>, std::pair<Rational, Rational>> sums;  // with sizes
     for (const LineTerm& term : equation) {
       const Place& place = places[static_cast<size_t>(term.strip)];
-      const int wrap = period(place.patch, place.across);
-      const ExactMapRow& row = map(place.patch, place.across)[static_cast<size_t>(term.row)];
+      const ExactMapRow& row = grids_.map(place.patch, place.across)[static_cast<size_t>(term.row)];
       for (size_t k = 0; k < row.coefficients.size(); ++k) {
-        int column = row.first + static_cast<int>(k);
-        if (wrap > 0 && column >= wrap) column -= wrap;
+        const int column =
+            grids_.wrapped(place.patch, place.across, row.first + static_cast<int>(k));
         auto& [sum, size] = sums[boundary_merged(places, term.strip, column)];
         const Rational value = term.value * row.coefficients[k];
         sum += value;
@@ -166,7 +137,7 @@ class RowMaker {
   std::pair<int, int> boundary_merged(const std::vector<Place>& places, int strip, int column) {
     if (strip == 0 || join_ == nullptr) return {strip, column};
     const auto last = [&](const Place& place, const SideRef& ref) {
-      return is_begin_side(ref.side) ? 0 : coarse(place.patch, place.across).size() - 1;
+      return is_begin_side(ref.side) ? 0 : grids_.coarse(place.patch, place.across).size() - 1;
     };
     if (column != last(places[1], join_->b)) return {strip, column};
     return {0, last(places[0], join_->a)};
@@ -188,12 +159,12 @@ class RowMaker {
     join_ =
         relation.kind == Kind::kJoin ? &model_.joins[static_cast<size_t>(relation.join)] : nullptr;
     const std::vector<Place> at = places(relation);
-    const KnotVector& along = coarse(at[0].patch, other(at[0].across));
+    const KnotVector& along = grids_.coarse(at[0].patch, other(at[0].across));
     if (at.size() == 2 &&
-        !same_knots(along, coarse(at[1].patch, other(at[1].across)), at[1].flipped)) {
+        !same_knots(along, grids_.coarse(at[1].patch, other(at[1].across)), at[1].flipped)) {
       return false;
     }
-    const int wrap = period(at[0].patch, other(at[0].across));
+    const int wrap = grids_.period(at[0].patch, other(at[0].across));
     const int count = wrap > 0 ? wrap : along.size();
     const double noise = std::max(kSameRow, 4.0 * relation.residual);
     std::vector<ContinuityRow> rows;
@@ -219,7 +190,8 @@ class RowMaker {
   // No strip is coarsened along the line.
   bool same_along(const std::vector<Place>& at) const {
     return std::all_of(at.begin(), at.end(), [&](const Place& place) {
-      return coarse(place.patch, other(place.across)) == fine(place.patch, other(place.across));
+      return grids_.coarse(place.patch, other(place.across)) ==
+             grids_.fine(place.patch, other(place.across));
     });
   }
 
@@ -229,7 +201,8 @@ class RowMaker {
     row.relation = k;
     for (const LineTerm& term : equation) {
       const Place& place = at[static_cast<size_t>(term.strip)];
-      const int along = place.flipped ? coarse(place.patch, other(place.across)).size() - 1 - b : b;
+      const int along =
+          place.flipped ? grids_.coarse(place.patch, other(place.across)).size() - 1 - b : b;
       const bool across_u = place.across == Direction::kU;
       row.terms.push_back(
           {place.patch, across_u ? term.row : along, across_u ? along : term.row, term.value});
@@ -238,9 +211,7 @@ class RowMaker {
   }
 
   const PatchModel& model_;
-  const std::vector<CoarseKnots>& coarse_;
-  PointClasses classes_;
-  std::map<std::pair<int, Direction>, ExactMap> maps_;
+  internal::CoarseGrids grids_;
   EquationPool pool_;
   const Join* join_ = nullptr;  // of the relation at hand, for joins
   ContinuityRows result_;

@@ -7,6 +7,7 @@
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/line_strips.h"
+#include "isochor/bspline/pole_rows.h"
 
 namespace isochor {
 namespace {
@@ -39,6 +40,9 @@ class RelationFinder {
       add_knot_lines(q, surface, Direction::kU);
       add_knot_lines(q, surface, Direction::kV);
     }
+    for (SmoothRelation& pole : internal::pole_relations(model_)) {
+      relations_.push_back(std::move(pole));
+    }
     return std::move(relations_);
   }
 
@@ -56,15 +60,13 @@ class RelationFinder {
     relation.kind = SmoothRelation::Kind::kJoin;
     relation.join = k;
     relation.sides = {join.a, join.b};
-    relation.order = order_of(join.smoothness);
-    if (join.a.patch == join.b.patch) {
-      // A seam is one more knot line of its patch, with the same right to curvature.
-      const Patch& patch = patch_of(model_, join.a.patch);
-      relation.order = std::min(
-          protected_order(join.smoothness, knots_of(patch, across_direction(join.a.side)).degree()),
-          protected_order(join.smoothness,
-                          knots_of(patch, across_direction(join.b.side)).degree()));
-    }
+    // A join has no more right to curvature than the knot lines of its rougher patch.
+    const auto order = [&](const SideRef& ref) {
+      return protected_order(
+          join.smoothness,
+          knots_of(patch_of(model_, ref.patch), across_direction(ref.side)).degree());
+    };
+    relation.order = std::min(order(join.a), order(join.b));
     const std::string a = label_of(patch_of(model_, join.a.patch));
     relation.text = join.a.patch == join.b.patch
                         ? a + " meets itself " + smoothly(relation.order) + " at its seam"

@@ -53,7 +53,7 @@ struct SmoothRelation {
   Direction across = Direction::kU;
   double knot = 0.0;
   std::vector<SideRef> sides;  // kJoin: its two sides; kPole: all collapsed sides at the pole
-  int order = 1;               // 1: tangents, 2: curvature too (seams: as protected_order)
+  int order = 1;               // 1: tangents, 2: curvature too; as protected_order
   Rational lambda = Rational(1), mu;
   double residual = 0.0;  // of the worse of the relations, as a part of its terms
   std::string text;       // "face:3 and face:4 meet smoothly (G1)"
