@@ -397,6 +397,23 @@ std::string transcript(const Problem& problem, const Solution& solution) {
   return text;
 }
 
+TEST(Problem, FourMethodsSayTheSame) {
+  RandomProblems problems(2017);
+  int solved = 0;
+  for (int trial = 0; trial < 150; ++trial) {
+    Problem problem = problems.next();
+    const Solution fast = solve(problem);
+    solved += fast.outcome == Outcome::kSolved ? 1 : 0;
+    for (const auto method :
+         {Problem::Method::kGcd, Problem::Method::kTurner, Problem::Method::kPlain}) {
+      problem.method = method;
+      EXPECT_EQ(transcript(problem, solve(problem)), transcript(problem, fast))
+          << trial << " " << name_of(method);
+    }
+  }
+  EXPECT_GT(solved, 50);
+}
+
 // The same problem with its lists in another order.
 Problem shuffled(const Problem& problem, std::mt19937& engine) {
   std::vector<int> order(problem.parameters.size());

@@ -8,6 +8,7 @@
 #include "isochor/ecles/conflicts.h"
 #include "isochor/ecles/least_change.h"
 #include "isochor/ecles/proof.h"
+#include "isochor/ecles/reference.h"
 
 namespace isochor {
 namespace {
@@ -226,13 +227,18 @@ void require_proofs(const System& system, const Analysis& analysis) {
   }
 }
 
-// By component, then by derived parameter in the order of the problem.
-std::vector<std::vector<Rational>> nearest_values(const Problem& problem, const System& system,
-                                                  const Analysis& analysis) {
+std::vector<Rational> weights_of(const Problem& problem) {
   std::vector<Rational> weights;
   for (const auto& each : problem.derived) weights.push_back(each.weight);
-  const LeastChange least(system.matrix, system.selection.derived, analysis.independent, weights);
-  std::vector<std::vector<Rational>> result;
+  return weights;
+}
+
+using ByComponent = std::vector<std::vector<Rational>>;  // each: one value a derived parameter
+
+ByComponent nearest_values(const Problem& problem, const System& system, const Analysis& analysis) {
+  const LeastChange least(system.matrix, system.selection.derived, analysis.independent,
+                          weights_of(problem));
+  ByComponent result;
   for (size_t c = 0; c < system.values.size(); ++c) {
     std::vector<Rational> wanted = system.values[c];
     for (const auto& each : problem.derived) {
@@ -243,13 +249,59 @@ std::vector<std::vector<Rational>> nearest_values(const Problem& problem, const 
   return result;
 }
 
+// One row for each item of a list: `point_of` says which point of it.
+template <typename List, typename PointOf>
+RationalMatrix points_of(const List& list, int dimension, PointOf point_of) {
+  RationalMatrix result(static_cast<int>(list.size()), dimension);
+  for (size_t i = 0; i < list.size(); ++i) {
+    for (int c = 0; c < dimension; ++c) {
+      result.set(static_cast<int>(i), c, point_of(list[i])[static_cast<size_t>(c)]);
+    }
+  }
+  return result;
+}
+
+Simplification simplification_of(Problem::Method method) {
+  ISOCHOR_REQUIRE(method != Problem::Method::kFast, name_of(method));
+  if (method == Problem::Method::kGcd) return Simplification::kGcd;
+  return method == Problem::Method::kTurner ? Simplification::kTurner : Simplification::kNone;
+}
+
+// The same by the algorithm of the thesis, whose verdicts must be the same too.
+ByComponent thesis_values(const Problem& problem, const System& system, const Analysis& analysis) {
+  const int d = problem.dimension;
+  const auto value = [](const auto& item) -> const RationalPoint& { return item.value; };
+  const ReferenceEditor editor(
+      system.matrix,
+      points_of(problem.constraints, d,
+                [](const auto& item) -> const RationalPoint& { return item.equals; }),
+      points_of(problem.parameters, d, value), system.selection, simplification_of(problem.method));
+  const auto update =
+      editor.update(points_of(problem.anchors, d, value),
+                    points_of(problem.derived, d,
+                              [](const auto& item) -> const RationalPoint& { return item.hint; }),
+                    weights_of(problem));
+  ISOCHOR_REQUIRE(update && editor.rank() == analysis.rank() &&
+                      editor.strongly_solvable() == analysis.strongly_solvable(),
+                  editor.rank(), analysis.rank());
+  ByComponent result(system.values.size());
+  for (int c = 0; c < d; ++c) {
+    for (int k = 0; k < update->derived.rows(); ++k) {
+      result[static_cast<size_t>(c)].push_back(update->derived.at(k, c));
+    }
+  }
+  return result;
+}
+
 void put_values(const Problem& problem, const System& system, const Analysis& analysis,
                 Solution& solution) {
   for (const auto& parameter : problem.parameters) solution.values.push_back(parameter.value);
   for (const auto& anchor : problem.anchors) {
     solution.values[static_cast<size_t>(anchor.parameter)] = anchor.value;
   }
-  const auto derived = nearest_values(problem, system, analysis);
+  const ByComponent derived = problem.method == Problem::Method::kFast
+                                  ? nearest_values(problem, system, analysis)
+                                  : thesis_values(problem, system, analysis);
   for (size_t k = 0; k < problem.derived.size(); ++k) {
     for (size_t c = 0; c < derived.size(); ++c) {
       solution.values[static_cast<size_t>(problem.derived[k].parameter)][c] = derived[c][k];
