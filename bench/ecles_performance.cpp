@@ -2,7 +2,8 @@
 //
 // usage: isochor_ecles_performance [--quick]
 //   --quick   small systems only
-// Exit status: 0 measured, 1 verdicts disagree or a proof fails (nothing is printed for it), 2 usage.
+// Exit status: 0 measured, 1 verdicts disagree or a proof fails (nothing is printed for it), 2
+// usage.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -99,8 +100,7 @@ double median_seconds(const Problem& problem) {
 // Dense, as the thesis has it; building it is not part of its time.
 IntegerMatrix dense(const ConstraintMatrix& matrix, const std::vector<int>& rows,
                     const std::vector<int>& parameters) {
-  internal::IndexMap place(parameters.size());
-  for (size_t j = 0; j < parameters.size(); ++j) place.insert(parameters[j], static_cast<int>(j));
+  const internal::IndexMap place(parameters);
   IntegerMatrix result(static_cast<int>(rows.size()), static_cast<int>(parameters.size()));
   for (size_t i = 0; i < rows.size(); ++i) {
     for (const ConstraintTerm& term : matrix.row(rows[i])) {
@@ -114,8 +114,7 @@ IntegerMatrix dense(const ConstraintMatrix& matrix, const std::vector<int>& rows
 // Factoring and the test of strong solvability, once.
 double thesis_seconds(const Problem& problem, const Analysis& analysis,
                       Simplification simplification) {
-  IntegerMatrix derived =
-      dense(problem.matrix, analysis.relevance.rows, problem.selection.derived);
+  IntegerMatrix derived = dense(problem.matrix, analysis.relevance.rows, problem.selection.derived);
   const RationalMatrix anchors(
       dense(problem.matrix, analysis.relevance.rows, problem.selection.anchors));
   const double begin = thread_cpu_seconds();
@@ -162,8 +161,8 @@ void print_growth(const std::vector<int>& sizes, const std::vector<int>& bits) {
       const Analysis analysis = proven(problem);
       const double fast = median_seconds(problem);
       std::printf("| %s | %zu x %zu | %d | %zu | %.3g | %.2f |\n", problem.name.c_str(),
-                  analysis.relevance.rows.size(), problem.selection.derived.size(),
-                  analysis.rank(), analysis.circuits.size(), 1e3 * fast, 1e6 * fast / triangles);
+                  analysis.relevance.rows.size(), problem.selection.derived.size(), analysis.rank(),
+                  analysis.circuits.size(), 1e3 * fast, 1e6 * fast / triangles);
       std::fflush(stdout);
     }
   }

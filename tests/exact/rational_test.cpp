@@ -207,5 +207,28 @@ TEST(Rational, ValuesDoNotShareState) {
   EXPECT_EQ(a, copy);
 }
 
+TEST(Rational, ReconstructsFromItsResidue) {
+  const Integer modulus(1000003);  // prime; sqrt(m / 2) = 707.1
+  // -355 / 113: n = 113 residue.
+  for (long residue = 0; residue < 1000003; ++residue) {
+    if ((113 * residue + 355) % 1000003 != 0) continue;
+    const auto found = Rational::reconstruct(Integer(residue), modulus);
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(*found, Rational(Integer(-355), Integer(113)));
+  }
+  EXPECT_EQ(Rational::reconstruct(Integer(707), modulus), Rational(707));
+  int none = 0;
+  for (long residue = 0; residue < 2000; ++residue) {
+    const auto found = Rational::reconstruct(Integer(residue), modulus);
+    none += found ? 0 : 1;
+    if (!found) continue;
+    EXPECT_TRUE(
+        (found->denominator() * Integer(residue) - found->numerator()).is_multiple_of(modulus));
+  }
+  EXPECT_GT(none, 0);
+  EXPECT_THROW(Rational::reconstruct(Integer(-1), modulus), PreconditionError);
+  EXPECT_THROW(Rational::reconstruct(modulus, modulus), PreconditionError);
+}
+
 }  // namespace
 }  // namespace isochor

@@ -161,7 +161,7 @@ bool moves_with_anchors(const Circuit& circuit, const ConstraintMatrix& matrix,
   std::vector<std::pair<int, Integer>> sums;
   for (size_t k = 0; k < circuit.rows.size(); ++k) {
     for (const ConstraintTerm& term : matrix.row(circuit.rows[k])) {
-      if (anchors[term.parameter] == internal::IndexMap::kNone) continue;
+      if (!anchors.contains(term.parameter)) continue;
       sums.emplace_back(term.parameter, term.coefficient * circuit.multipliers[k]);
     }
   }
@@ -191,8 +191,7 @@ Analysis analyse(const ConstraintMatrix& matrix, const Selection& selection,
   internal::exchange_to_first(order, decision.dependents, decision.rows);
   name_rows(std::move(decision), selection, analysis);
 
-  internal::IndexMap anchors(selection.anchors.size());
-  for (const int anchor : selection.anchors) anchors.insert(anchor, 0);
+  const internal::IndexMap anchors(selection.anchors);
   for (size_t k = 0; k < analysis.circuits.size(); ++k) {
     if (moves_with_anchors(analysis.circuits[k], matrix, anchors)) {
       analysis.obstructions.push_back(static_cast<int>(k));

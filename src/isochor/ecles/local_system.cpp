@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "isochor/ecles/index_map.h"
 
@@ -116,13 +117,14 @@ std::vector<Block> connected_blocks(const LocalSystem& system, const std::vector
 LocalSystem::LocalSystem(const ConstraintMatrix& matrix, const std::vector<int>& relevant_rows,
                          const std::vector<int>& derived)
     : columns(static_cast<int>(derived.size())) {
-  IndexMap local(derived.size());
-  for (size_t j = 0; j < derived.size(); ++j) local.insert(derived[j], static_cast<int>(j));
+  const IndexMap local(derived);
   row_begin.reserve(relevant_rows.size() + 1);
   for (const int row : relevant_rows) {
     for (const ConstraintTerm& term : matrix.row(row)) {
       const int column = local[term.parameter];
-      if (column != IndexMap::kNone) terms.push_back({column, &term.coefficient});
+      if (column == IndexMap::kNone) continue;
+      const std::optional<long> word = term.coefficient.to_long();
+      terms.push_back({column, word.has_value(), word.value_or(0), &term.coefficient});
     }
     row_begin.push_back(terms.size());
   }

@@ -15,6 +15,8 @@ namespace isochor::internal {
 
 struct LocalTerm {
   int column = 0;
+  bool is_word = false;
+  long word = 0;  // the value, where it fits
   const Integer* value = nullptr;
 };
 

@@ -133,6 +133,16 @@ Rational Rational::parse(std::string_view text) {
   return Rational(numerator, denominator);
 }
 
+std::optional<Rational> Rational::reconstruct(const Integer& residue, const Integer& modulus) {
+  ISOCHOR_REQUIRE(residue.sign() >= 0 && residue < modulus && Integer(2) < modulus,
+                  residue.to_string(), modulus.to_string());
+  Rational result;
+  if (fmpq_reconstruct_fmpz(handle(result.words_), &residue.word_, &modulus.word_) == 0) {
+    return std::nullopt;
+  }
+  return result;
+}
+
 Rational& Rational::operator+=(const Rational& b) {
   fmpq_add(handle(words_), handle(words_), handle(b.words_));
   return *this;

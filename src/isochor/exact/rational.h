@@ -10,6 +10,7 @@
 //  (5) text:         parse(to_string()) gives the number back
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -42,6 +43,9 @@ class Rational {
   // "3", "-3/2", "0.1", "1e-3", "+2.5E+7": exactly that number. No spaces, no hexadecimal, decimal
   // exponents between -9999 and 9999. Throws InputError (entity: the text) with the reason.
   static Rational parse(std::string_view text);
+  // The fraction n / d with n == d residue modulo m and |n|, d <= sqrt((m - 1) / 2), which is
+  // unique; nothing when there is none. residue in [0, m), m > 2.
+  static std::optional<Rational> reconstruct(const Integer& residue, const Integer& modulus);
 
   Rational& operator+=(const Rational& b);
   Rational& operator-=(const Rational& b);
