@@ -8,6 +8,7 @@
 #include <random>
 
 #include "ecles/matrix_tables.h"
+#include "ecles/random_edits.h"
 #include "ecles/rational_elimination.h"
 #include "isochor/base/error.h"
 
@@ -15,21 +16,16 @@ namespace isochor {
 namespace {
 
 using test::column_of;
+using test::random_system;
+using test::random_values;
+using test::Size;
+using test::System;
 using test::Table;
 using test::table_of;
+using test::terms_of;
 
 constexpr Simplification kAll[] = {Simplification::kNone, Simplification::kGcd,
                                    Simplification::kTurner};
-
-std::vector<RationalTerms> terms_of(const Table& rows) {
-  std::vector<RationalTerms> result(rows.size());
-  for (size_t i = 0; i < rows.size(); ++i) {
-    for (size_t j = 0; j < rows[i].size(); ++j) {
-      if (!rows[i][j].is_zero()) result[i].emplace_back(static_cast<int>(j), rows[i][j]);
-    }
-  }
-  return result;
-}
 
 RationalMatrix points(const std::vector<std::vector<Rational>>& rows) {
   RationalMatrix result(static_cast<int>(rows.size()), static_cast<int>(rows.at(0).size()));
@@ -132,66 +128,6 @@ TEST(Reference, StrongDoesNotDependOnValues) {
   EXPECT_FALSE(editor.values_are_feasible());
   EXPECT_FALSE(editor.weakly_solvable(column_of({0})));
   EXPECT_EQ(editor.redundant().size(), 1u);
-}
-
-struct System {
-  Table rows;
-  int parameters = 0;
-  int components = 0;
-  Selection selection;
-  RationalMatrix right, values;
-};
-
-enum class Size { kPlain, kHuge, kTiny, kBoth };
-
-Rational entry_scale(std::mt19937_64& random, Size size) {
-  const bool up = size == Size::kHuge || (size == Size::kBoth && random() % 2 == 0);
-  if (size == Size::kPlain) return 1;
-  return Rational(1).scaled_by_power_of_two(up ? 200 : -200);
-}
-
-RationalMatrix random_values(std::mt19937_64& random, int rows, int columns) {
-  RationalMatrix result(rows, columns);
-  for (int i = 0; i < rows; ++i) {
-    for (int c = 0; c < columns; ++c) {
-      result.set(i, c, Rational(static_cast<long>(random() % 201) - 100, 1 + random() % 8));
-    }
-  }
-  return result;
-}
-
-System random_system(std::mt19937_64& random, const test::RandomMatrix& wanted, Size size,
-                     int components) {
-  System system;
-  system.rows = table_of(test::random_matrix(random, wanted));
-  for (auto& row : system.rows) {
-    const Rational of_row = entry_scale(random, size);
-    for (Rational& entry : row) entry *= size == Size::kBoth ? entry_scale(random, size) : of_row;
-  }
-  system.parameters = wanted.columns;
-  system.components = components;
-  std::vector<int> order(static_cast<size_t>(wanted.columns));
-  std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), random);
-  const size_t anchors = order.empty() ? 0 : random() % (order.size() / 2 + 1);
-  const size_t derived = random() % (order.size() - anchors + 1);
-  system.selection.anchors.assign(order.begin(), order.begin() + static_cast<long>(anchors));
-  system.selection.derived.assign(order.begin() + static_cast<long>(anchors),
-                                  order.begin() + static_cast<long>(anchors + derived));
-  system.values = random_values(random, wanted.columns, components);
-  if (random() % 4 == 0) {
-    system.right = random_values(random, wanted.rows, components);
-  } else {
-    const Table product =
-        test::multiplied(system.rows, table_of(system.values), static_cast<size_t>(components));
-    system.right = RationalMatrix(wanted.rows, components);
-    for (int i = 0; i < wanted.rows; ++i) {
-      for (int c = 0; c < components; ++c) {
-        system.right.set(i, c, product[static_cast<size_t>(i)][static_cast<size_t>(c)]);
-      }
-    }
-  }
-  return system;
 }
 
 // The given rows of E, and their entries in the chosen columns, without the engine's help.
