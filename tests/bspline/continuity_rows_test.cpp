@@ -1,5 +1,4 @@
 // Rows keep the skin smooth: displacements that fulfil them, and some that do not.
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,42 +14,9 @@
 namespace isochor {
 namespace {
 
-using ::isochor::testing::CoarseSpace;
 using ::isochor::testing::cut_in_two;
+using ::isochor::testing::expect_rows_keep_the_skin;
 using ::isochor::testing::finest_knots;
-using ::isochor::testing::freedom;
-using ::isochor::testing::joined;
-using ::isochor::testing::Seams;
-using ::isochor::testing::seams_of;
-using ::testing::IsEmpty;
-
-// Laws (1) and (2) on one model at one scale; returns the freedom.
-int expect_rows_keep_the_skin(const PatchModel& model, const std::vector<CoarseKnots>& coarse,
-                              double amount) {
-  const auto relations = smooth_relations(model);
-  EXPECT_FALSE(relations.empty());
-  const ContinuityRows rows = continuity_rows(model, relations, coarse);
-  EXPECT_THAT(rows.inexpressible, IsEmpty());
-  for (const ContinuityRow& row : rows.rows) {
-    Rational sum;
-    for (const GridTerm& term : row.terms) sum += term.value;
-    EXPECT_EQ(sum, Rational(0)) << relations[static_cast<size_t>(row.relation)].text;
-  }
-  const CoarseSpace space(model, coarse);
-  const Seams before = seams_of(model, model.points);
-  const auto ties = space.ties();
-  const auto solution = space.random_solution(joined(ties, space.rows_of(rows.rows)), amount);
-  EXPECT_GT(solution.norm(), 0.1 * amount);
-  const Seams after = seams_of(model, space.moved(solution));
-  EXPECT_NEAR(after.angle, before.angle, 1e-12);
-  EXPECT_NEAR(after.curvature, before.curvature, 1e-9);
-  EXPECT_NEAR(after.pole, before.pole, 1e-12);
-  if (!rows.rows.empty()) {
-    const Seams creased = seams_of(model, space.moved(space.random_solution(ties, amount)));
-    EXPECT_GT(creased.angle + creased.curvature + creased.pole, 1e-3);
-  }
-  return freedom(space, rows.rows);
-}
 
 TEST(ContinuityRows, TwoPatchesOfACut) {
   std::mt19937 random(72);

@@ -1,6 +1,8 @@
 // Displacements that fulfil continuity rows, the freedom they leave, and what they do to a model.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Dense>
 #include <map>
 #include <numeric>
@@ -239,6 +241,36 @@ inline Seams seams_of(const PatchModel& model, const std::vector<Vec3>& at) {
     }
   }
   return seams;
+}
+
+// Laws (1) and (2) on one model at one scale; returns the freedom.
+// `inexpressible`: how many relations the scale cannot state; they are locked instead.
+inline int expect_rows_keep_the_skin(const PatchModel& model,
+                                     const std::vector<CoarseKnots>& coarse, double amount,
+                                     size_t inexpressible = 0) {
+  const auto relations = smooth_relations(model);
+  EXPECT_FALSE(relations.empty());
+  const ContinuityRows rows = continuity_rows(model, relations, coarse);
+  EXPECT_EQ(rows.inexpressible.size(), inexpressible);
+  for (const ContinuityRow& row : rows.rows) {
+    Rational sum;
+    for (const GridTerm& term : row.terms) sum += term.value;
+    EXPECT_EQ(sum, Rational(0)) << relations[static_cast<size_t>(row.relation)].text;
+  }
+  const CoarseSpace space(model, coarse);
+  const Seams before = seams_of(model, model.points);
+  const auto ties = space.ties();
+  const auto solution = space.random_solution(joined(ties, space.rows_of(rows.rows)), amount);
+  EXPECT_GT(solution.norm(), 0.1 * amount);
+  const Seams after = seams_of(model, space.moved(solution));
+  EXPECT_NEAR(after.angle, before.angle, 1e-12);
+  EXPECT_NEAR(after.curvature, before.curvature, 1e-9);
+  EXPECT_NEAR(after.pole, before.pole, 1e-12);
+  if (!rows.rows.empty()) {
+    const Seams creased = seams_of(model, space.moved(space.random_solution(ties, amount)));
+    EXPECT_GT(creased.angle + creased.curvature + creased.pole, 1e-3);
+  }
+  return freedom(space, rows.rows);
 }
 
 }  // namespace isochor::testing
