@@ -105,6 +105,17 @@ TEST(PositiveSystem, WhatDoublesCannotFactorIsEliminated) {
   const auto y = system.solve(right);
   expect_solves(matrix, *y, right);
   EXPECT_EQ(y->numerators[1], -k);
+  // Fifteen of them side by side, beyond what is eliminated.
+  Dense many(30, std::vector<Integer>(30));
+  std::vector<Integer> ones(30, Integer(1));
+  for (size_t b = 0; b < 30; b += 2)
+    for (size_t i = 0; i < 4; ++i) many[b + i / 2][b + i % 2] = matrix[i / 2][i % 2];
+  const PositiveSystem large(sparse(many));
+  EXPECT_FALSE(large.factored() && large.solve(ones, PositiveSystem::Rung::kLifting));
+  const auto solution = large.solve(ones);
+  expect_solves(many, *solution, ones);
+  EXPECT_EQ(solution->numerators,
+            large.solve(ones, PositiveSystem::Rung::kElimination)->numerators);
 }
 
 TEST(PositiveSystem, RefusesMatricesThatAreNotPositive) {

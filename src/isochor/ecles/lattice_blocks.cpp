@@ -96,15 +96,17 @@ struct LatticeBlocks::System {
 };
 
 std::shared_ptr<const SolutionLattice> LatticeCache::get(const IntegerMatrix& a,
-                                                         std::vector<int> rows,
+                                                         const std::vector<int>& rows,
                                                          const std::vector<int>& columns,
                                                          const std::vector<Integer>& multipliers) {
-  std::vector<int> key = std::move(rows);
+  std::vector<long> key(rows.begin(), rows.end());
   key.push_back(-1);
   key.insert(key.end(), columns.begin(), columns.end());
-  const Integer one = 1;
-  for (const Integer& multiplier : multipliers)
-    if (multiplier != one) return std::make_shared<SolutionLattice>(a, multipliers);
+  for (const Integer& multiplier : multipliers) {
+    const auto word = multiplier.to_long();
+    if (!word) return std::make_shared<SolutionLattice>(a, multipliers);
+    key.push_back(*word);
+  }
   auto& slot = lattices_[std::move(key)];
   if (!slot) slot = std::make_shared<SolutionLattice>(a, multipliers);
   auto result = slot;

@@ -36,12 +36,12 @@ namespace isochor::internal {
 // Lattices of blocks met before, by their rows, columns and multipliers.
 class LatticeCache {
  public:
-  std::shared_ptr<const SolutionLattice> get(const IntegerMatrix& a, std::vector<int> rows,
+  std::shared_ptr<const SolutionLattice> get(const IntegerMatrix& a, const std::vector<int>& rows,
                                              const std::vector<int>& columns,
                                              const std::vector<Integer>& multipliers);
 
  private:
-  std::map<std::vector<int>, std::shared_ptr<const SolutionLattice>> lattices_;
+  std::map<std::vector<long>, std::shared_ptr<const SolutionLattice>> lattices_;
 };
 
 // The moves of the anchors that blocks admit: a lattice of full rank in Z^A.

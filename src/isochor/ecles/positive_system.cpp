@@ -6,12 +6,13 @@
 #include <limits>
 
 #include "isochor/base/error.h"
-#include "isochor/exact/rational.h"
+#include "isochor/exact/rational_matrix.h"
 
 namespace isochor::internal {
 namespace {
 
 constexpr int kSmall = 6;       // up to here elimination beats lifting
+constexpr int kDense = 24;      // beyond, p-adic lifting beats elimination
 constexpr int kStepBits = 50;   // digits kept of one double solve
 constexpr int kGuardBits = 20;  // of them, those that may be wrong
 constexpr long kLeastGain = 8;  // bits per step below which lifting gives up
@@ -62,6 +63,7 @@ struct PositiveSystem::State {
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor;
 
   CommonFractions eliminate(const std::vector<Integer>& right) const;
+  CommonFractions solve_densely(const std::vector<Integer>& right) const;
   std::optional<CommonFractions> lift(const std::vector<Integer>& right) const;
   std::optional<CommonFractions> reconstruct(const std::vector<Integer>& digits, long places,
                                              const std::vector<Integer>& right) const;
@@ -123,7 +125,27 @@ std::optional<CommonFractions> PositiveSystem::solve(const std::vector<Integer>&
     if (lifted || rung == Rung::kLifting) return lifted;
   }
   if (rung == Rung::kLifting) return std::nullopt;
-  return state_->eliminate(right);
+  return size() > kDense && rung == Rung::kEither ? state_->solve_densely(right)
+                                                  : state_->eliminate(right);
+}
+
+CommonFractions PositiveSystem::State::solve_densely(const std::vector<Integer>& right) const {
+  const int n = static_cast<int>(rows.size());
+  RationalMatrix matrix(n, n), column(n, 1);
+  for (int i = 0; i < n; ++i) {
+    for (const auto& [j, value] : rows[static_cast<size_t>(i)]) matrix.set(i, j, value);
+    column.set(i, 0, right[static_cast<size_t>(i)]);
+  }
+  const auto solution = isochor::solve(matrix, column);
+  ISOCHOR_REQUIRE(solution, "singular");
+  CommonFractions result;
+  for (int i = 0; i < n; ++i)
+    result.denominator = lcm(result.denominator, solution->at(i, 0).denominator());
+  for (int i = 0; i < n; ++i) {
+    const Rational scaled = solution->at(i, 0) * Rational(result.denominator);
+    result.numerators.push_back(scaled.numerator());
+  }
+  return result;
 }
 
 CommonFractions PositiveSystem::State::eliminate(const std::vector<Integer>& right) const {

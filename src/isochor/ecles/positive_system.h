@@ -6,7 +6,7 @@
 // exactly using numerical methods", J. Symbolic Computation 41, 2006). The digits become fractions
 // by continued fractions, and S y == r is checked in integers before anything is returned. Small
 // systems, and those whose factor gains no digits, are eliminated without fractions instead
-// (E. Bareiss 1968): slower, always right.
+// (E. Bareiss 1968), large ones of these by the dense exact solver: slower, always right.
 //
 // Laws (tests/ecles/positive_system_test.cpp):
 //  (1) exact:   S numerators == denominator r, denominator > 0, in lowest terms together
