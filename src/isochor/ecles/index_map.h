@@ -1,4 +1,4 @@
-// A map from parameters to their places in a list, whose cost follows the length of the list.
+// A map from parameters to small numbers, whose cost follows the number of entries.
 #pragma once
 
 #include <algorithm>
@@ -8,13 +8,15 @@
 
 namespace isochor::internal {
 
-// A table over the keys' range where it is not much longer than the list, else open addressing with
-// linear probing.
+// A table over the keys' range where they are known and it is not much longer than their list, else
+// open addressing with linear probing. Keys are not negative.
 class IndexMap {
  public:
   static constexpr int kNone = -1;
 
-  // Keys are not negative. Of a key that is there twice, one place is kept.
+  // Empty, with room for so many entries.
+  explicit IndexMap(size_t entries) { make_slots(entries); }
+  // Each key's place in the list; of a key that is there twice, the first.
   explicit IndexMap(const std::vector<int>& keys) {
     if (keys.empty()) return;
     const auto [low, high] = std::minmax_element(keys.begin(), keys.end());
@@ -23,13 +25,21 @@ class IndexMap {
       low_ = *low;
       direct_.assign(range, kNone);
     } else {
-      size_t size = 8;
-      while (size < 2 * keys.size()) size *= 2;
-      slots_.resize(size);
+      make_slots(keys.size());
     }
-    for (size_t k = 0; k < keys.size(); ++k) insert(keys[k], static_cast<int>(k));
+    for (size_t k = 0; k < keys.size(); ++k) {
+      repetition_ = !insert(keys[k], static_cast<int>(k)) || repetition_;
+    }
   }
 
+  // False when the key is there already. Only keys of the list, or any with room left.
+  bool insert(int key, int value) {
+    int& place = slots_.empty() ? direct_[static_cast<size_t>(key - low_)] : slot(key);
+    if (place != kNone) return false;
+    place = value;
+    return true;
+  }
+  // Whether the list had a key twice.
   bool has_repetition() const { return repetition_; }
   // kNone when the key is not there.
   int operator[](int key) const {
@@ -49,10 +59,10 @@ class IndexMap {
     int value = kNone;
   };
 
-  void insert(int key, int value) {
-    int& place = slots_.empty() ? direct_[static_cast<size_t>(key - low_)] : slot(key);
-    repetition_ = repetition_ || place != kNone;
-    place = value;
+  void make_slots(size_t entries) {
+    size_t size = 8;
+    while (size < 2 * entries) size *= 2;
+    slots_.resize(size);
   }
   int& slot(int key) {
     Slot& slot = slots_[find(key)];
