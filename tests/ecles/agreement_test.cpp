@@ -91,7 +91,7 @@ TEST(Agreement, SparseAndDenseEnginesGiveTheSame) {
         random,
         test::random_system(random, {rows, columns, rank, density, 4},
                             static_cast<test::Size>(round % 4), static_cast<int>(random() % 3)),
-        seen);
+        true, seen);
   }
   std::cout << "seed " << kSeed << ": solved " << seen.solved << ", conflicting "
             << seen.conflicting << "\n";

@@ -32,10 +32,9 @@ struct FollowedRow {
 
 std::vector<FollowedRow> followed_rows(const ConstraintMatrix& matrix, const Selection& selection,
                                        const std::vector<int>& rows) {
-  internal::IndexMap position(selection.anchors.size() + selection.derived.size());
-  int next = 0;
-  for (const auto* list : {&selection.anchors, &selection.derived})
-    for (const int j : *list) position.insert(j, next++);
+  std::vector<int> chosen = selection.anchors;
+  chosen.insert(chosen.end(), selection.derived.begin(), selection.derived.end());
+  const internal::IndexMap position(chosen);
   std::vector<FollowedRow> result;
   for (const int i : rows) {
     FollowedRow row;

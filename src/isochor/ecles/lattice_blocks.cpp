@@ -41,11 +41,8 @@ struct LatticeBlocks::System {
 
   System(const ConstraintMatrix& matrix, const Selection& selection, const std::vector<int>& given)
       : owners(selection.derived.size()), anchors(selection.anchors.size()) {
-    IndexMap derived(selection.derived.size()), anchor(selection.anchors.size());
-    for (size_t k = 0; k < selection.derived.size(); ++k)
-      ISOCHOR_REQUIRE(derived.insert(selection.derived[k], static_cast<int>(k)), k);
-    for (size_t k = 0; k < selection.anchors.size(); ++k)
-      ISOCHOR_REQUIRE(anchor.insert(selection.anchors[k], static_cast<int>(k)), k);
+    const IndexMap derived(selection.derived), anchor(selection.anchors);
+    ISOCHOR_REQUIRE(!derived.has_repetition() && !anchor.has_repetition());
     for (const int i : given) {
       rows.emplace_back();
       Row& row = rows.back();
