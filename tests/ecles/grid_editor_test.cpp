@@ -174,6 +174,28 @@ TEST(GridEditor, ComponentsTooLargeAreSolvedInRationals) {
   expect_constraints(editor);
 }
 
+TEST(GridEditor, BlocksThatRoundTooFarAreSolvedInRationals) {
+  // 4095 a + 4094 b == c: the kernel is (4094, -4095), rounding ends up to 2047.5 units away.
+  const std::vector<RationalTerms> rows = {{{0, 4095}, {1, 4094}, {2, -1}}};
+  GridEditor editor(ConstraintMatrix(3, rows), 1, 10, {{0, 0, 0}});
+  const Selection selection{{2}, {0, 1}};
+  GridPlan plan = start(editor, selection);
+  EXPECT_TRUE(plan.loose.empty());
+  EXPECT_GT(plan.bound, 1.9);
+  GridOptions options;
+  options.largest_rounding = 1.0;
+  plan = start(editor, selection, options);
+  EXPECT_EQ(plan.loose, (std::vector<int>{0, 1}));
+  EXPECT_EQ(plan.bound, 0.0);
+  const GridUpdate update = editor.update({{1}}, {{0.0, 0.0}});
+  ASSERT_EQ(update.outcome, Outcome::kDone) << update.reason;
+  expect_constraints(editor);
+  const long square = 4095L * 4095 + 4094L * 4094;
+  EXPECT_EQ(editor.value(0, 0), fraction(4095, square));  // the optimum itself
+  EXPECT_EQ(editor.value(0, 1), fraction(4094, square));
+  EXPECT_LT(update.distance, 1e-12);
+}
+
 TEST(GridEditor, ChainsOfEditsStayExactAndWithinTheBound) {
   std::mt19937 random(kChainSeed);
   const testing::C1Spline spline(4, 45, 9, random);
@@ -187,10 +209,10 @@ TEST(GridEditor, ChainsOfEditsStayExactAndWithinTheBound) {
 
 TEST(GridEditor, ChainsOnRandomSystemsStayExactAndWithinTheBound) {
   std::mt19937 random(kChainSeed + 1);
-  const RandomGrid grid(160, 50, 4095, random);
-  GridEditor editor = grid.editor(24);
+  const RandomGrid grid(160, 40, 4095, random);
+  GridEditor editor = grid.editor(36);
   const ChainResult result = run_chain(editor, grid.chooser(), 150, 15, random);
-  print(result, "random sparse system, 50 x 160");
+  print(result, "random sparse system, 40 x 160");
   EXPECT_GT(result.edits, 60);
   EXPECT_LE(result.largest_bits, 64u);
 }

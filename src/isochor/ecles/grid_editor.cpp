@@ -18,8 +18,9 @@ using internal::Wide;
 constexpr long kLargestMove = 1L << 53;  // units: anchors' moves are exact in doubles
 
 Integer to_integer(Wide value) {
+  if (value == static_cast<long>(value)) return {static_cast<long>(value)};
   const auto low = static_cast<long>(value & ((Wide{1} << 62) - 1));
-  return Integer(static_cast<long>(value >> 62)).shifted(62) + Integer(low);
+  return to_integer(value >> 62).shifted(62) + Integer(low);
 }
 
 // A relevant row on A (positions from 0) and D (positions from |A|).
@@ -155,8 +156,9 @@ GridPlan GridEditor::initialize(const Selection& selection, const Analysis& anal
   std::vector<double> weights;
   for (const Rational& weight : options.weights) weights.push_back(weight.to_double());
   LeastChange optimum(matrix_, selection.derived, analysis.independent, options.weights);
-  internal::LatticeBlocks blocks(matrix_, selection, analysis.independent, weights,
-                                 options.largest_block, *cache_);
+  internal::LatticeBlocks blocks(
+      matrix_, selection, analysis.independent, weights,
+      {options.largest_block, options.largest_rounding / unit_.to_double()}, *cache_);
   auto job = std::make_shared<Job>(Job{selection,
                                        options,
                                        std::move(optimum),

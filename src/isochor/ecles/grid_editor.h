@@ -17,10 +17,11 @@
 //  (4) refusal:  an update that is not done changes nothing and says why
 // Where the grid has no solution for the anchors' targets the policy decides: snap to a near
 // admissible move and report the deviation, or refuse and name the rows and the divisor.
-// Limits: numbers beyond 64 bits are refused by value. Blocks too large for a lattice (option
-// largest_block, columns) are solved in rationals, exactly, but their digits then do grow.
+// Limits: numbers beyond 64 bits are refused by value. Blocks that no lattice suits (GridOptions)
+// are solved in rationals, exactly, but their digits then do grow.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -42,7 +43,10 @@ enum class AnchorPolicy { kSnap, kRequireExact };
 struct GridOptions {
   std::vector<Rational> weights;  // in the order of Selection::derived; empty for all equal
   AnchorPolicy policy = AnchorPolicy::kSnap;
+  // Blocks with more columns are divided; what stays larger, or may round by more than
+  // largest_rounding (model units), is solved in rationals.
   int largest_block = 64;
+  double largest_rounding = std::numeric_limits<double>::infinity();
 };
 
 // What initialize() found. Lengths in model units.

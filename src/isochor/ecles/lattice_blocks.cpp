@@ -176,8 +176,9 @@ bool AnchorLattice::nearest(const std::vector<long>& z, std::vector<Wide>& resul
 
 LatticeBlocks::LatticeBlocks(const ConstraintMatrix& matrix, const Selection& selection,
                              const std::vector<int>& rows, const std::vector<double>& weights,
-                             int largest_block, LatticeCache& cache)
-    : multipliers_(selection.derived.size(), Integer(1)),
+                             const LatticeLimits& limits, LatticeCache& cache)
+    : limits_(limits),
+      multipliers_(selection.derived.size(), Integer(1)),
       parameters_(selection.derived),
       is_loose_(selection.derived.size(), 0),
       anchors_(selection.anchors.size()) {
@@ -191,7 +192,7 @@ LatticeBlocks::LatticeBlocks(const ConstraintMatrix& matrix, const Selection& se
     (row.owned.size() >= 2 && row.common == Integer(1) ? peeled : rest).push_back(r);
   }
   const auto too_large = [&](const std::vector<int>& component) {
-    return system.columns(component).size() > static_cast<size_t>(largest_block);
+    return system.columns(component).size() > static_cast<size_t>(limits_.columns);
   };
   std::vector<std::vector<int>> components, loose;
   for (auto& component : system.components(rest)) {
@@ -231,6 +232,12 @@ LatticeBlocks::LatticeBlocks(const ConstraintMatrix& matrix, const Selection& se
   set_bounds();
 }
 
+bool LatticeBlocks::suits(const SolutionLattice& lattice) const {
+  if (!lattice.fits()) return false;
+  const std::vector<double> bound = lattice.bound();
+  return std::all_of(bound.begin(), bound.end(), [&](double b) { return b <= limits_.bound; });
+}
+
 void LatticeBlocks::set_loose(const System& system, const std::vector<int>& rows) {
   for (const int r : rows) loose_rows_.push_back(system.rows[static_cast<size_t>(r)].row);
   for (const int k : system.columns(rows)) is_loose_[static_cast<size_t>(k)] = 1;
@@ -267,7 +274,7 @@ void LatticeBlocks::build_component(const System& system, const std::vector<int>
     parameters.push_back(parameters_[static_cast<size_t>(k)]);
   }
   if (words) block.lattice = cache.get(a, block.rows, parameters, multipliers);
-  if (!words || !block.lattice->fits()) return set_loose(system, rows);
+  if (!words || !suits(*block.lattice)) return set_loose(system, rows);
   if (moved && block.lattice->index() != Integer(1))
     anchors_.restrict_to(moves, block.lattice->hermite());
   blocks_.push_back(std::move(block));
@@ -296,7 +303,7 @@ void LatticeBlocks::build_peeled(const System& system, int index, LatticeCache& 
   if (!loose)
     block.lattice = cache.get(a, block.rows, parameters,
                               std::vector<Integer>(block.columns.size(), Integer(1)));
-  if (loose || !block.lattice->fits()) {
+  if (loose || !suits(*block.lattice)) {
     loose_rows_.push_back(row.row);
     for (const auto& entry : row.owned) is_loose_[static_cast<size_t>(entry.position)] = 1;
     hangs_ = hangs_ || row.derived.size() > row.owned.size();

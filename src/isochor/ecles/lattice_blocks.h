@@ -23,6 +23,7 @@
 //              restricted, for no other z
 #pragma once
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <optional>
@@ -74,12 +75,17 @@ struct LatticeBlock {
   bool peeled = false;
 };
 
+struct LatticeLimits {
+  int columns = 64;                                        // of a block
+  double bound = std::numeric_limits<double>::infinity();  // of one block's rounding
+};
+
 class LatticeBlocks {
  public:
   // `rows` independent on D. Weights in the order of D, empty for all equal.
   LatticeBlocks(const ConstraintMatrix& matrix, const Selection& selection,
-                const std::vector<int>& rows, const std::vector<double>& weights, int largest_block,
-                LatticeCache& cache);
+                const std::vector<int>& rows, const std::vector<double>& weights,
+                const LatticeLimits& limits, LatticeCache& cache);
 
   const std::vector<LatticeBlock>& blocks() const { return blocks_; }
   const std::vector<int>& free() const { return free_; }              // positions in D
@@ -105,12 +111,14 @@ class LatticeBlocks {
 
  private:
   struct System;
+  bool suits(const SolutionLattice& lattice) const;
   void build_component(const System& system, const std::vector<int>& rows, LatticeCache& cache);
   void build_peeled(const System& system, int row, LatticeCache& cache);
   void set_loose(const System& system, const std::vector<int>& rows);
   void set_bounds();
   double peeled_share(const LatticeBlock& block, size_t column) const;
 
+  LatticeLimits limits_;
   std::vector<LatticeBlock> blocks_;
   std::vector<int> free_, loose_rows_, loose_;
   std::vector<Integer> multipliers_;
