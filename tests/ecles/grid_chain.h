@@ -178,13 +178,13 @@ inline double distance_from_optimum(const GridEditor& editor, const Selection& s
   return largest;
 }
 
-// `tries` random edits, each from the result of the one before; every `every`-th is compared.
-inline ChainResult run_chain(GridEditor& editor, const Chooser& choose, int tries, int every,
+// `wanted` random edits, each from the result of the one before; every `every`-th is compared.
+// Choices that cannot be made are drawn again, as many as `wanted` of them.
+inline ChainResult run_chain(GridEditor& editor, const Chooser& choose, int wanted, int every,
                              std::mt19937& random) {
   ChainResult result;
   std::uniform_real_distribution<double> share(-1.0, 1.0);
-  const std::vector<Rational> per_unit = {Rational(1) / editor.unit()};
-  for (int edit = 0; edit < tries; ++edit) {
+  for (int draw = 0; draw < 2 * wanted && result.edits < wanted; ++draw) {
     const auto [selection, reach] = choose(random);
     const Analysis analysis = analyse(editor.matrix(), selection);
     if (!analysis.strongly_solvable()) {
@@ -221,7 +221,7 @@ inline ChainResult run_chain(GridEditor& editor, const Chooser& choose, int trie
       }
     result.largest_deviation = std::max(result.largest_deviation, update.deviation);
     EXPECT_LE(update.distance, update.bound * (1 + 1e-9));
-    if (edit % every != 0) continue;
+    if (result.edits % every != 0) continue;
     ++result.sampled;
     const double distance = distance_from_optimum(editor, selection, analysis.independent, hints);
     EXPECT_LE(distance, update.distance);
