@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
@@ -38,6 +39,14 @@ TEST(ContinuityRows, TwoPatchesOfACut) {
     }());
   }
   EXPECT_EQ(expect_rows_keep_the_skin(model, coarse, 0.1), (9 - 2) * v.size());
+}
+
+TEST(ContinuityRows, CurvatureWithFactorsOfItsOwn) {
+  for (const auto& [lambda, mu] : {std::make_pair(1.5, 0.625), std::make_pair(0.7, -1.1)}) {
+    const PatchModel model = testing::curvature_pair(lambda, mu);
+    // Four columns of seven points, two of them given up.
+    EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.05), 4 * 5);
+  }
 }
 
 // Rank over the rationals as the tensor product says: the rows of crossing lines depend on each
