@@ -149,6 +149,24 @@ TEST(GridEditor, WeightsSayWhichParameterMovesLess) {
   }
 }
 
+TEST(GridEditor, WeightsBeyondDoublesStillDecide) {
+  // Both own columns of row 1 are heavier than doubles can say.
+  const Rational huge = Rational(1).scaled_by_power_of_two(1200);
+  const std::vector<RationalTerms> rows = {{{0, 1}, {1, 1}, {4, -1}}, {{2, 1}, {3, 1}, {4, -1}}};
+  GridEditor editor(ConstraintMatrix(5, rows), 1, 20, {{0, 0, 0, 0, 0}});
+  GridOptions options;
+  options.weights = {1, huge, huge, huge};
+  start(editor, {{4}, {0, 1, 2, 3}}, options);
+  const GridUpdate update = editor.update({{1}}, {{0.0, 0.0, 0.0, 0.0}});
+  ASSERT_EQ(update.outcome, Outcome::kDone) << update.reason;
+  EXPECT_EQ(editor.value(0, 0), Rational(1));
+  EXPECT_EQ(editor.value(0, 1), Rational(0));
+  EXPECT_EQ(editor.value(0, 2), fraction(1, 2));
+  expect_constraints(editor);
+  options.weights[1] = 0;
+  EXPECT_THROW(start(editor, {{4}, {0, 1, 2, 3}}, options), PreconditionError);
+}
+
 TEST(GridEditor, ComponentsTooLargeAreSolvedInRationals) {
   std::mt19937 random(kChainSeed);
   const testing::C1Spline spline(3, 45, 9, random);

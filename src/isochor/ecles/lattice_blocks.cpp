@@ -346,12 +346,16 @@ void LatticeBlocks::build_peeled(const System& system, int index, LatticeCache& 
   blocks_.push_back(std::move(block));
 }
 
-// How far the private column moves for one unit of the row's rest, at least change.
+// How far the private column moves for one unit of the row's rest, at least change; where all
+// weights are too heavy for doubles, as if they were equal.
 double LatticeBlocks::peeled_share(const LatticeBlock& block, size_t column) const {
-  double square = 0.0;
-  for (size_t j = 0; j < block.columns.size(); ++j)
-    square += inverse_weights_[static_cast<size_t>(block.columns[j])] * block.coefficients[j] *
-              block.coefficients[j];
+  double square = 0.0, unweighted = 0.0;
+  for (size_t j = 0; j < block.columns.size(); ++j) {
+    const double term = block.coefficients[j] * block.coefficients[j];
+    square += inverse_weights_[static_cast<size_t>(block.columns[j])] * term;
+    unweighted += term;
+  }
+  if (!(square > 0.0)) return block.coefficients[column] / unweighted;
   return inverse_weights_[static_cast<size_t>(block.columns[column])] * block.coefficients[column] /
          square;
 }
