@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "isochor/base/tolerance.h"
@@ -111,17 +112,26 @@ class RowMaker {
       : model_(model), grids_(model, coarse) {}
 
   ContinuityRows run(const std::vector<SmoothRelation>& relations) {
-    // Lines first: what poles ask for has to agree with them.
-    for (bool poles : {false, true}) {
-      for (int k = 0; k < static_cast<int>(relations.size()); ++k) {
-        const SmoothRelation& relation = relations[static_cast<size_t>(k)];
-        if ((relation.kind == Kind::kPole) != poles) continue;
-        const bool stated =
-            poles ? internal::add_pole_rows(model_, relation, k, &grids_, &result_.rows)
-                  : add_line(k, relation);
-        if (!stated) result_.inexpressible.push_back(k);
+    // Lines first: what poles ask for has to agree with them. Well-measured lines before others,
+    // which then take over their equations.
+    std::vector<int> order(relations.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+      const SmoothRelation& first = relations[static_cast<size_t>(a)];
+      const SmoothRelation& second = relations[static_cast<size_t>(b)];
+      if ((first.kind == Kind::kPole) != (second.kind == Kind::kPole)) {
+        return second.kind == Kind::kPole;
       }
+      return first.residual < second.residual;
+    });
+    for (int k : order) {
+      const SmoothRelation& relation = relations[static_cast<size_t>(k)];
+      const bool stated = relation.kind == Kind::kPole
+                              ? internal::add_pole_rows(model_, relation, k, &grids_, &result_.rows)
+                              : add_line(k, relation);
+      if (!stated) result_.inexpressible.push_back(k);
     }
+    std::sort(result_.inexpressible.begin(), result_.inexpressible.end());
     return std::move(result_);
   }
 
@@ -208,7 +218,7 @@ class RowMaker {
     }
     const int wrap = grids_.period(at[0].patch, other(at[0].across));
     const int count = wrap > 0 ? wrap : along.size();
-    const double noise = std::max(kSameRow, 4.0 * relation.residual);
+    const double noise = std::max(kSameRow, 2.0 * relation.residual);
     std::vector<ContinuityRow> rows;
     for (const std::vector<LineEquation>& equations : relation.equations) {
       if (equations.size() > 1 && !same_along(at)) return false;

@@ -177,7 +177,7 @@ class Fit {
     if (!(raw > 0.0) || !std::isfinite(raw)) return false;
     const double first = misfit(0, raw, 0.0).relative();
     if (!(first <= kSmoothResidual)) return false;
-    const Rational lambda = settled(raw, raw * std::max(kFactorNoise, first), known);
+    const Rational lambda = settled(raw, raw * std::max(kFactorNoise, 0.25 * first), known);
     relation->residual = misfit(0, lambda.to_double(), 0.0).relative();
     relation->lambda = lambda;
     relation->mu = Rational();
@@ -198,7 +198,7 @@ class Fit {
     if (!(second.relative() <= kSmoothResidual)) return false;
     double speed = 0.0;
     for (const Vec3& v : below) speed = std::max(speed, v.norm());
-    const double noise = std::max(kFactorNoise, second.relative()) * second.size / speed;
+    const double noise = std::max(kFactorNoise, 0.25 * second.relative()) * second.size / speed;
     relation->mu = settled(raw, noise, known);
     relation->residual = std::max(relation->residual,
                                   misfit(1, lambda * lambda, relation->mu.to_double()).relative());
