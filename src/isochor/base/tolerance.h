@@ -96,7 +96,7 @@ inline constexpr double kSameRow = 1e-12;
 inline constexpr double kSmoothResidual = 1e-6;
 
 // A factor measured on poles that are doubles is taken as the simplest rational within this part of
-// itself, or within a quarter of the residual, if that is larger. Dimensionless: some hundred
+// itself, or farther off where that does not make the residual worse. Dimensionless: some hundred
 // roundings.
 inline constexpr double kFactorNoise = 2e-14;
 
