@@ -37,6 +37,7 @@ class TriangleSpline {
   int points() const;
   int triangles() const { return static_cast<int>(triangles_.size()); }
   int vertex(int column, int row) const { return row * (options_.columns + 1) + column; }
+  int middle() const { return vertex(options_.columns / 2, options_.rows / 2); }
   std::vector<RationalTerms> rows() const;
   ConstraintMatrix matrix() const { return {points(), rows()}; }
 
