@@ -169,7 +169,7 @@ TEST(GridEditor, WeightsBeyondDoublesStillDecide) {
 
 TEST(GridEditor, ComponentsTooLargeAreSolvedInRationals) {
   std::mt19937 random(kChainSeed);
-  const testing::C1Spline spline(3, 45, 9, random);
+  const testing::SplineEdits spline = testing::small_spline(3, kChainSeed);
   GridEditor editor = spline_editor(spline, 40);
   const Selection selection = spline_selection(spline, {7}, 2);
   GridOptions options;
@@ -216,7 +216,7 @@ TEST(GridEditor, BlocksThatRoundTooFarAreSolvedInRationals) {
 
 TEST(GridEditor, ChainsOfEditsStayExactAndWithinTheBound) {
   std::mt19937 random(kChainSeed);
-  const testing::C1Spline spline(4, 45, 9, random);
+  const testing::SplineEdits spline = testing::small_spline(4, kChainSeed);
   GridEditor editor = spline_editor(spline, 40);
   const ChainResult result = run_chain(editor, spline_chooser(spline), 60, 15, random);
   print(result, "quintic spline, 4 x 4 cells");
@@ -238,12 +238,12 @@ TEST(GridEditor, ChainsOnRandomSystemsStayExactAndWithinTheBound) {
 
 TEST(GridEditor, RequiredAnchorsAreMetOrTheRefusalIsProven) {
   std::mt19937 random(kChainSeed + 2);
-  const testing::C1Spline spline(3, 45, 9, random);
+  const testing::SplineEdits spline = testing::small_spline(3, kChainSeed);
   GridEditor editor = spline_editor(spline, 40);
   int met = 0, refused = 0;
   std::uniform_int_distribution<long> step(-3, 3);
   for (int round = 0; round < 120; ++round) {
-    const int anchor = static_cast<int>(random() % static_cast<unsigned>(spline.points()));
+    const int anchor = static_cast<int>(random() % static_cast<unsigned>(spline.spline().points()));
     const Selection selection = spline_selection(spline, {anchor}, 0);
     const Analysis analysis = analyse(editor.matrix(), selection);
     if (!analysis.strongly_solvable()) continue;
