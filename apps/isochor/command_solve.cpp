@@ -84,7 +84,7 @@ void print_violations(const Common& common, const Problem& problem, const Soluti
 }
 
 void print_summary(const Common& common, const Problem& problem, const Solution& solution) {
-  print(common, headline(problem, solution));
+  if (solution.reason.empty()) print(common, headline(problem, solution));
   if (solution.outcome == Solution::Outcome::kSolved) print_values(common, problem, solution);
   size_t shown = 0;
   for (const Redundancy& each : solution.redundant) {
@@ -112,6 +112,7 @@ int run_solve(const SolveOptions& options, const Common& common) {
   if (!options.output.empty()) write_file(options.output, to_json(value));
   print_summary(common, file.problem, solution);
   const bool solved = solution.outcome == Solution::Outcome::kSolved;
+  if (!solution.reason.empty()) refuse(options.problem + ": refused: " + solution.reason);
   size_t shown = 0;
   for (const Combination& conflict : solution.conflicts) {
     if (++shown > kMostLines) break;

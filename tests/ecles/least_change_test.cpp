@@ -215,5 +215,30 @@ TEST(LeastChange, RefusesWhatItCannotSolve) {
   EXPECT_THROW(static_cast<void>(dependent.solve({1, 1, 1}, {0, 0, 0})), PreconditionError);
 }
 
+// Two rows that doubles cannot tell apart: only elimination helps, where it is allowed.
+TEST(LeastChange, WithinALimit) {
+  const Rational near = Rational(1) + Rational(1).scaled_by_power_of_two(-80);
+  const ConstraintMatrix matrix(3, {{{0, 1}, {1, 1}}, {{0, 1}, {1, near}, {2, 1}}});
+  const LeastChange least(matrix, {0, 1}, {0, 1});
+  const std::vector<Rational> right{1, 2}, values{0, 0, 0};
+  EXPECT_EQ(least.solve_within(1, right, values), std::nullopt);
+  const auto solved = least.solve_within(2, right, values);
+  ASSERT_TRUE(solved);
+  EXPECT_EQ(*solved, least.solve(right, values));
+  EXPECT_EQ((*solved)[1], Rational(1).scaled_by_power_of_two(80));
+  const LeastChange easy(matrix, {0, 1}, {0});
+  EXPECT_EQ(easy.solve_within(1, right, values), easy.solve(right, values));
+}
+
+TEST(LeastChange, BitsAreBoundedFromAbove) {
+  const ConstraintMatrix matrix(4, {{{0, 3}, {1, 4}}, {{1, 1}, {2, 5}}});
+  const LeastChange least(matrix, {0, 1, 2, 3}, {0, 1});
+  EXPECT_EQ(least.most_bits(), 3 * 10);  // 25 and 26 need five digits each; three parameters
+  unsigned long bits = 0;
+  for (const Rational& value : least.solve({1, 1}, {0, 0, 0, 0}))
+    bits += value.denominator().bits();
+  EXPECT_LE(static_cast<double>(bits), least.most_bits());
+}
+
 }  // namespace
 }  // namespace isochor

@@ -518,6 +518,49 @@ TEST(Problem, MistakesNameThePlaceAndTheValue) {
   EXPECT_THROW(solve(broken), PreconditionError);
 }
 
+// Differences of neighbours, the last value given: c_k says factor p_k - factor p_(k+1) = 0.
+Problem chain(int constraints, const Rational& factor) {
+  Problem problem;
+  for (int j = 0; j <= constraints; ++j) {
+    problem.parameters.push_back({"p" + std::to_string(j), {0}});
+    if (j > 0) problem.derived.push_back({j, {j % 2}, 1});
+  }
+  for (int i = 0; i + 1 < constraints; ++i) {
+    problem.constraints.push_back(
+        {"c" + std::to_string(i), {{i, factor}, {i + 1, -factor}, {i + 2, 1}}, {0}});
+  }
+  problem.anchors = {{0, {1}}};
+  return problem;
+}
+
+TEST(Problem, LimitsAreRefusedWithNumbersAfterTheVerdict) {
+  Problem plain = chain(18, 1);
+  plain.method = Problem::Method::kPlain;
+  Solution solution = solve(plain);
+  EXPECT_EQ(solution.outcome, Outcome::kRefused);
+  EXPECT_THAT(solution.values, IsEmpty());
+  EXPECT_EQ(solution.rank, 17);
+  EXPECT_TRUE(solution.proofs_verified && solution.strongly_solvable);
+  EXPECT_EQ(headline(plain, solution),
+            "refused: the method \"plain\" doubles the length of its numbers with each of 17 "
+            "independent constraints, the limit is 16; \"fast\" gives the same values");
+  EXPECT_EQ(solve(chain(18, 1)).outcome, Outcome::kSolved);
+  plain = chain(17, 1);
+  plain.method = Problem::Method::kPlain;
+  EXPECT_EQ(solve(plain).outcome, Outcome::kSolved);
+
+  Problem wide = chain(320, 1);
+  wide.method = Problem::Method::kTurner;
+  EXPECT_THAT(solve(wide).reason, HasSubstr("it would fill 102080 coefficients"));
+
+  const Rational huge = Rational::parse("1e2000");
+  solution = solve(chain(400, huge));
+  EXPECT_EQ(solution.outcome, Outcome::kRefused);
+  EXPECT_THAT(solution.reason, HasSubstr("derived parameters that hang together may need"));
+  EXPECT_THAT(solution.reason, HasSubstr("MB; the limit is 128 MB"));
+  EXPECT_EQ(solve(chain(40, 1000)).outcome, Outcome::kSolved);
+}
+
 TEST(Problem, LongSumsAreCutInSentences) {
   Problem problem;
   Combination all;

@@ -175,13 +175,20 @@ Rational exact_rest(const Row& row, const std::vector<Number>& right_sides,
 }
 
 // Adds U A^T y of one block to the hints x of its columns.
-void add_change(const Block& block, const std::vector<Rational>& rests, std::vector<Rational>& x) {
+// False, and nothing added, when only elimination would help and the block is larger than allowed.
+bool add_change(const Block& block, int most_eliminated, const std::vector<Rational>& rests,
+                std::vector<Rational>& x) {
   Integer common = 1;
   for (const Rational& rest : rests) common = lcm(common, rest.denominator());
   std::vector<Integer> right;
   for (const Rational& rest : rests)
     right.push_back(rest.numerator() * common.divided_exactly(rest.denominator()));
-  const internal::CommonFractions y = *block.system.solve(right);
+  using Rung = internal::PositiveSystem::Rung;
+  const bool small = block.system.size() <= most_eliminated;
+  if (!small && !block.system.factored()) return false;
+  const auto solved = block.system.solve(right, small ? Rung::kEither : Rung::kLifting);
+  if (!solved) return false;
+  const internal::CommonFractions& y = *solved;
   std::vector<Integer> change(block.columns.size());
   for (size_t i = 0; i < block.rows.size(); ++i)
     for (const Term& term : block.rows[i].inner)
@@ -189,6 +196,7 @@ void add_change(const Block& block, const std::vector<Rational>& rests, std::vec
   const Integer denominator = y.denominator * common;
   for (size_t j = 0; j < change.size(); ++j)
     x[j] += Rational(change[j] * block.inverse_weights[j], denominator);
+  return true;
 }
 
 // The rest of a row in doubles at the values x of its block; `fixed` is b.
@@ -208,21 +216,11 @@ Sum fixed_part(const Row& row, const std::vector<double>& right_sides,
   return fixed;
 }
 
-// The same in plain doubles: enough for a first guess.
-double rough_rest_of(const Row& row, const Sum& fixed, const std::vector<double>& x) {
-  double rest = fixed.value.high();
-  for (const Term& term : row.inner)
-    rest -= term.approximate.high() * x[static_cast<size_t>(term.index)];
-  return rest;
-}
-
 // x += U A^T S^-1 (b - A x); returns the largest change.
-double refine(const Block& block, const std::vector<Sum>& fixed, bool rough,
-              std::vector<double>& x) {
+double refine(const Block& block, const std::vector<Sum>& fixed, std::vector<double>& x) {
   std::vector<double> rests;
   for (size_t i = 0; i < block.rows.size(); ++i)
-    rests.push_back(rough ? rough_rest_of(block.rows[i], fixed[i], x)
-                          : rest_of(block.rows[i], fixed[i], x).value.high());
+    rests.push_back(rest_of(block.rows[i], fixed[i], x).value.high());
   const std::vector<double> y = block.system.solve_scaled(rests);
   std::vector<double> change(x.size());
   for (size_t i = 0; i < block.rows.size(); ++i)
@@ -253,7 +251,7 @@ void solve_rounded(const Block& block, const std::vector<double>& right_sides,
                    const std::vector<double>& values, std::vector<double>& x) {
   std::vector<Rational> exact(x.begin(), x.end()), rests;
   for (const Row& row : block.rows) rests.push_back(exact_rest(row, right_sides, values, exact));
-  add_change(block, rests, exact);
+  add_change(block, std::numeric_limits<int>::max(), rests, exact);
   for (size_t k = 0; k < x.size(); ++k) x[k] = exact[k].to_double();
 }
 
@@ -317,17 +315,39 @@ int LeastChange::blocks() const { return static_cast<int>(state_->blocks.size())
 
 std::vector<Rational> LeastChange::solve(const std::vector<Rational>& right_sides,
                                          const std::vector<Rational>& values) const {
+  return *solve_within(std::numeric_limits<int>::max(), right_sides, values);
+}
+
+std::optional<std::vector<Rational>> LeastChange::solve_within(
+    int most_eliminated, const std::vector<Rational>& right_sides,
+    const std::vector<Rational>& values) const {
   std::vector<Rational> result;
   for (const int j : state_->derived) result.push_back(values.at(static_cast<size_t>(j)));
   for (const Block& block : state_->blocks) {
     std::vector<Rational> x, rests;
     for (const int c : block.columns) x.push_back(result[static_cast<size_t>(c)]);
     for (const Row& row : block.rows) rests.push_back(exact_rest(row, right_sides, values, x));
-    add_change(block, rests, x);
+    if (!add_change(block, most_eliminated, rests, x)) return std::nullopt;
     for (size_t k = 0; k < x.size(); ++k)
       result[static_cast<size_t>(block.columns[k])] = std::move(x[k]);
   }
   return result;
+}
+
+double LeastChange::most_bits() const {
+  double bits = 0.0;
+  for (const Block& block : state_->blocks) {
+    double determinant = 0.0;  // a positive definite one is at most the product of its diagonal
+    for (const Row& row : block.rows) {
+      Integer norm;
+      for (const Term& term : row.inner)
+        norm.add_product(term.coefficient * term.coefficient,
+                         block.inverse_weights[static_cast<size_t>(term.index)]);
+      determinant += static_cast<double>(norm.bits());
+    }
+    bits += determinant * static_cast<double>(block.columns.size());
+  }
+  return bits;
 }
 
 LeastChange::Approximation LeastChange::approximate(const std::vector<double>& right_sides,
@@ -341,9 +361,8 @@ LeastChange::Approximation LeastChange::approximate(const std::vector<double>& r
     for (const int c : block.columns) x.push_back(result.derived[static_cast<size_t>(c)]);
     for (const Row& row : block.rows) fixed.push_back(fixed_part(row, right_sides, values));
     if (block.approximable) {
-      refine(block, fixed, true, x);
-      refine(block, fixed, false, x);
-      result.last_change = std::max(result.last_change, refine(block, fixed, false, x));
+      for (int pass = 0; pass < 2; ++pass) refine(block, fixed, x);
+      result.last_change = std::max(result.last_change, refine(block, fixed, x));
     } else {
       solve_rounded(block, right_sides, values, x);
     }

@@ -16,6 +16,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "isochor/ecles/constraint_matrix.h"
@@ -41,6 +42,14 @@ class LeastChange {
   // read. Returns values of derived(), exact.
   std::vector<Rational> solve(const std::vector<Rational>& right_sides,
                               const std::vector<Rational>& values) const;
+  // The same, or nothing when a block of more than `most_eliminated` rows defeats lifting: its
+  // dense solution takes minutes from two thousand rows on.
+  std::optional<std::vector<Rational>> solve_within(int most_eliminated,
+                                                    const std::vector<Rational>& right_sides,
+                                                    const std::vector<Rational>& values) const;
+  // Binary digits of all exact values together, bounded from above: for each block, its derived
+  // parameters times the bound of Hadamard for the determinant of A U A^T.
+  double most_bits() const;
 
   struct Approximation {
     std::vector<double> derived;

@@ -6,9 +6,8 @@
 #include "isochor/base/error.h"
 #include "isochor/ecles/analysis.h"
 #include "isochor/ecles/conflicts.h"
-#include "isochor/ecles/least_change.h"
+#include "isochor/ecles/problem_system.h"
 #include "isochor/ecles/proof.h"
-#include "isochor/ecles/reference.h"
 
 namespace isochor {
 namespace {
@@ -41,55 +40,6 @@ void require_coefficients(const std::string& entity, const Problem::Constraint& 
                   [](const auto& term) { return term.second.is_zero(); })) {
     refuse(entity, "all coefficients of the constraint \"" + constraint.name + "\" are zero");
   }
-}
-
-// The parameters and the constraints of a problem, prepared for the analysis.
-struct System {
-  ConstraintMatrix matrix;
-  Selection selection;
-  std::vector<int> precedence;                     // by name
-  std::vector<std::vector<Rational>> right_sides;  // component by component, as given
-  std::vector<std::vector<Rational>> values;       // likewise; anchors new, the others as they are
-};
-
-std::vector<RationalTerms> rows_of(const Problem& problem) {
-  std::vector<RationalTerms> rows;
-  rows.reserve(problem.constraints.size());
-  for (const auto& constraint : problem.constraints) rows.push_back(constraint.terms);
-  return rows;
-}
-
-// The place of each constraint among all, sorted by name: a property that survives any reordering.
-std::vector<int> places_by_name(const std::vector<Problem::Constraint>& constraints) {
-  std::vector<int> order(constraints.size()), places(constraints.size());
-  for (size_t i = 0; i < order.size(); ++i) order[i] = static_cast<int>(i);
-  std::sort(order.begin(), order.end(), [&](int a, int b) {
-    return constraints[static_cast<size_t>(a)].name < constraints[static_cast<size_t>(b)].name;
-  });
-  for (size_t k = 0; k < order.size(); ++k) {
-    places[static_cast<size_t>(order[k])] = static_cast<int>(k);
-  }
-  return places;
-}
-
-System system_of(const Problem& problem) {
-  System system{ConstraintMatrix(static_cast<int>(problem.parameters.size()), rows_of(problem)),
-                {},
-                places_by_name(problem.constraints),
-                {},
-                {}};
-  for (const auto& anchor : problem.anchors) system.selection.anchors.push_back(anchor.parameter);
-  for (const auto& each : problem.derived) system.selection.derived.push_back(each.parameter);
-  for (size_t c = 0; c < static_cast<size_t>(problem.dimension); ++c) {
-    auto& right_side = system.right_sides.emplace_back();
-    for (const auto& constraint : problem.constraints) right_side.push_back(constraint.equals[c]);
-    auto& values = system.values.emplace_back();
-    for (const auto& parameter : problem.parameters) values.push_back(parameter.value[c]);
-    for (const auto& anchor : problem.anchors) {
-      values[static_cast<size_t>(anchor.parameter)] = anchor.value[c];
-    }
-  }
-  return system;
 }
 
 // Right side minus left side of one constraint; value_of(parameter, component).
@@ -139,8 +89,8 @@ void normalise(Combination& combination) {
 }
 
 // A circuit in the words of the problem.
-Combination combination_of(const System& system, const std::vector<bool>& is_anchor,
-                           const Circuit& circuit) {
+Combination combination_of(const internal::ProblemSystem& system,
+                           const std::vector<bool>& is_anchor, const Circuit& circuit) {
   Combination result;
   const std::vector<Rational> given = given_multipliers(system.matrix, circuit);
   for (size_t k = 0; k < circuit.rows.size(); ++k) {
@@ -179,7 +129,7 @@ Combination combination_of(const System& system, const std::vector<bool>& is_anc
 }
 
 // The verdict and everything that explains it, in the order of names.
-void judge(const Problem& problem, const System& system, const Analysis& analysis,
+void judge(const Problem& problem, const internal::ProblemSystem& system, const Analysis& analysis,
            Solution& solution) {
   solution.relevant = analysis.relevance.rows;
   solution.rank = analysis.rank();
@@ -214,7 +164,7 @@ void judge(const Problem& problem, const System& system, const Analysis& analysi
 
 // Verdicts leave this file only when the checker, which shares no code with those who found them,
 // agrees.
-void require_proofs(const System& system, const Analysis& analysis) {
+void require_proofs(const internal::ProblemSystem& system, const Analysis& analysis) {
   ISOCHOR_REQUIRE(verify(analysis, system.matrix, system.selection), analysis.rank());
   for (const Conflict& conflict :
        conflicts(system.matrix, analysis, system.right_sides, system.values)) {
@@ -227,84 +177,21 @@ void require_proofs(const System& system, const Analysis& analysis) {
   }
 }
 
-std::vector<Rational> weights_of(const Problem& problem) {
-  std::vector<Rational> weights;
-  for (const auto& each : problem.derived) weights.push_back(each.weight);
-  return weights;
-}
-
-using ByComponent = std::vector<std::vector<Rational>>;  // each: one value a derived parameter
-
-ByComponent nearest_values(const Problem& problem, const System& system, const Analysis& analysis) {
-  const LeastChange least(system.matrix, system.selection.derived, analysis.independent,
-                          weights_of(problem));
-  ByComponent result;
-  for (size_t c = 0; c < system.values.size(); ++c) {
-    std::vector<Rational> wanted = system.values[c];
-    for (const auto& each : problem.derived) {
-      wanted[static_cast<size_t>(each.parameter)] = each.hint[c];
-    }
-    result.push_back(least.solve(system.right_sides[c], wanted));
+void put_values(const Problem& problem, const internal::ProblemSystem& system,
+                const Analysis& analysis, Solution& solution) {
+  const internal::DerivedValues derived = internal::derived_values(problem, system, analysis);
+  if (!derived.refused.empty()) {
+    solution.outcome = Solution::Outcome::kRefused;
+    solution.reason = derived.refused;
+    return;
   }
-  return result;
-}
-
-// One row for each item of a list: `point_of` says which point of it.
-template <typename List, typename PointOf>
-RationalMatrix points_of(const List& list, int dimension, PointOf point_of) {
-  RationalMatrix result(static_cast<int>(list.size()), dimension);
-  for (size_t i = 0; i < list.size(); ++i) {
-    for (int c = 0; c < dimension; ++c) {
-      result.set(static_cast<int>(i), c, point_of(list[i])[static_cast<size_t>(c)]);
-    }
-  }
-  return result;
-}
-
-Simplification simplification_of(Problem::Method method) {
-  ISOCHOR_REQUIRE(method != Problem::Method::kFast, name_of(method));
-  if (method == Problem::Method::kGcd) return Simplification::kGcd;
-  return method == Problem::Method::kTurner ? Simplification::kTurner : Simplification::kNone;
-}
-
-// The same by the algorithm of the thesis, whose verdicts must be the same too.
-ByComponent thesis_values(const Problem& problem, const System& system, const Analysis& analysis) {
-  const int d = problem.dimension;
-  const auto value = [](const auto& item) -> const RationalPoint& { return item.value; };
-  const ReferenceEditor editor(
-      system.matrix,
-      points_of(problem.constraints, d,
-                [](const auto& item) -> const RationalPoint& { return item.equals; }),
-      points_of(problem.parameters, d, value), system.selection, simplification_of(problem.method));
-  const auto update =
-      editor.update(points_of(problem.anchors, d, value),
-                    points_of(problem.derived, d,
-                              [](const auto& item) -> const RationalPoint& { return item.hint; }),
-                    weights_of(problem));
-  ISOCHOR_REQUIRE(update && editor.rank() == analysis.rank() &&
-                      editor.strongly_solvable() == analysis.strongly_solvable(),
-                  editor.rank(), analysis.rank());
-  ByComponent result(system.values.size());
-  for (int c = 0; c < d; ++c) {
-    for (int k = 0; k < update->derived.rows(); ++k) {
-      result[static_cast<size_t>(c)].push_back(update->derived.at(k, c));
-    }
-  }
-  return result;
-}
-
-void put_values(const Problem& problem, const System& system, const Analysis& analysis,
-                Solution& solution) {
   for (const auto& parameter : problem.parameters) solution.values.push_back(parameter.value);
   for (const auto& anchor : problem.anchors) {
     solution.values[static_cast<size_t>(anchor.parameter)] = anchor.value;
   }
-  const ByComponent derived = problem.method == Problem::Method::kFast
-                                  ? nearest_values(problem, system, analysis)
-                                  : thesis_values(problem, system, analysis);
   for (size_t k = 0; k < problem.derived.size(); ++k) {
-    for (size_t c = 0; c < derived.size(); ++c) {
-      solution.values[static_cast<size_t>(problem.derived[k].parameter)][c] = derived[c][k];
+    for (size_t c = 0; c < derived.values.size(); ++c) {
+      solution.values[static_cast<size_t>(problem.derived[k].parameter)][c] = derived.values[c][k];
     }
   }
   for (int i : solution.relevant) {
@@ -394,6 +281,8 @@ const char* name_of(Solution::Outcome outcome) {
       return "not_weakly_solvable";
     case Solution::Outcome::kNotStronglySolvable:
       return "not_strongly_solvable";
+    case Solution::Outcome::kRefused:
+      return "refused";
   }
   return "";
 }
@@ -402,7 +291,7 @@ bool Combination::contradicts() const { return !is_zero(residual); }
 
 Solution solve(const Problem& problem) {
   problem.validate();
-  const System system = system_of(problem);
+  const internal::ProblemSystem system = internal::system_of(problem);
   const Analysis analysis = analyse(system.matrix, system.selection, {system.precedence});
   require_proofs(system, analysis);
   Solution solution;

@@ -100,9 +100,11 @@ struct Violation {
 };
 
 struct Solution {
-  enum class Outcome { kSolved, kNotWeaklySolvable, kNotStronglySolvable };
+  // Refused: it has a solution, which a limit of the method keeps it from giving.
+  enum class Outcome { kSolved, kNotWeaklySolvable, kNotStronglySolvable, kRefused };
 
   Outcome outcome = Outcome::kSolved;
+  std::string reason;  // of a refusal, with the limit
   // Of every parameter, in the order of the problem; empty unless solved.
   std::vector<RationalPoint> values;
   int rank = 0;               // of the relevant constraints on the derived parameters

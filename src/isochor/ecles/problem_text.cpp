@@ -114,6 +114,8 @@ std::string headline(const Problem& problem, const Solution& solution) {
     case Solution::Outcome::kNotStronglySolvable:
       return "not strongly solvable: some values of the anchors could not be served (" +
              constraints + ", rank " + std::to_string(solution.rank) + ")";
+    case Solution::Outcome::kRefused:
+      return "refused: " + solution.reason;
   }
   return "";
 }

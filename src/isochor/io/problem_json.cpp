@@ -284,6 +284,7 @@ Value solution_value(const Problem& problem, const Solution& solution,
   return Value::object()
       .set("isochor_solution", 1)
       .set("outcome", name_of(solution.outcome))
+      .set("reason", solution.reason)
       .set("values", writer.values(solution))
       .set("rank", solution.rank)
       .set("freedom_left", solution.freedom_left)
