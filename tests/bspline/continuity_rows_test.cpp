@@ -1,7 +1,9 @@
 // Rows keep the skin smooth: displacements that fulfil them, and some that do not.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
@@ -40,6 +42,14 @@ TEST(ContinuityRows, TwoPatchesOfACut) {
   EXPECT_EQ(expect_rows_keep_the_skin(model, coarse, 0.1), (9 - 2) * v.size());
 }
 
+TEST(ContinuityRows, CurvatureWithFactorsOfItsOwn) {
+  for (const auto& [lambda, mu] : {std::make_pair(1.5, 0.625), std::make_pair(0.7, -1.1)}) {
+    const PatchModel model = testing::curvature_pair(lambda, mu);
+    // Four columns of seven points, two of them given up.
+    EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.05), 4 * 5);
+  }
+}
+
 // Rank over the rationals as the tensor product says: the rows of crossing lines depend on each
 // other exactly, whatever rounding did to points and knots.
 TEST(ContinuityRows, FourPatchesAtACorner) {
@@ -63,6 +73,42 @@ TEST(ContinuityRows, FourPatchesAtACorner) {
   const int columns = u.size() + 3;
   const int rows = v.size() + 2;
   EXPECT_EQ(expect_rows_keep_the_skin(model, finest_knots(model), 0.1), (columns - 2) * (rows - 2));
+}
+
+// Points with nine good digits: the factors of opposite edges are measured differently, and yet no
+// row is independent of the others that should not be.
+TEST(ContinuityRows, FourPatchesOfNoisyPoints) {
+  std::mt19937 random(42);
+  const KnotVector u = KnotVector::uniform(4, 3);
+  const KnotVector v = KnotVector::uniform(3, 3);
+  std::vector<Vec3> poles;
+  for (int i = 0; i < u.size(); ++i) {
+    for (int j = 0; j < v.size(); ++j) {
+      poles.emplace_back(u.greville(i), v.greville(j), testing::uniform(random, -0.2, 0.2));
+    }
+  }
+  PatchModel model = testing::cut_apart(testing::make_separate_model({Surface(u, v, poles)}),
+                                        {u.interior()[1]}, {v.interior()[0]});
+  testing::stretch(model.patches[1], Direction::kV, 0.7);
+  testing::stretch(model.patches[3], Direction::kV, 0.7);
+  for (Vec3& p : model.points) {
+    p += 1e-9 * Vec3(testing::uniform(random, -1, 1), testing::uniform(random, -1, 1),
+                     testing::uniform(random, -1, 1));
+  }
+  model.joins = find_joins(model);
+  const auto relations = smooth_relations(model);
+  ASSERT_EQ(relations.size(), 4u);
+  double worst = 0.0;
+  for (const SmoothRelation& relation : relations) worst = std::max(worst, relation.residual);
+  EXPECT_GT(worst, 1e-10);
+  EXPECT_LT(worst, 1e-7);
+  const ContinuityRows rows = continuity_rows(model, relations, finest_knots(model));
+  const testing::CoarseSpace space(model, finest_knots(model));
+  const int free = (u.size() + 3 - 2) * (v.size() + 2 - 2);
+  EXPECT_EQ(testing::freedom(space, rows.rows), free);
+  const auto moved = space.moved(
+      space.random_solution(testing::joined(space.ties(), space.rows_of(rows.rows)), 0.05));
+  EXPECT_LT(testing::seams_of(model, moved).angle, 1e-7);
 }
 
 TEST(ContinuityRows, RationalTorus) {

@@ -14,7 +14,7 @@
 
 #include "isochor/ecles/grid_editor.h"
 #include "isochor/ecles/least_change.h"
-#include "support/c1_spline.h"
+#include "support/spline_edits.h"
 
 namespace isochor {
 
@@ -59,16 +59,16 @@ inline std::vector<std::vector<double>> rounded(const std::vector<std::vector<Ra
 }
 
 // The spline at rest: every control point where it belongs, in units of 1 / (5 2^bits).
-inline GridEditor spline_editor(const testing::C1Spline& spline, unsigned bits) {
+inline GridEditor spline_editor(const testing::SplineEdits& spline, unsigned bits) {
   std::vector<std::vector<Rational>> values(2);
   for (int c = 0; c < 2; ++c)
-    for (int p = 0; p < spline.points(); ++p)
+    for (int p = 0; p < spline.spline().points(); ++p)
       values[static_cast<size_t>(c)].push_back(spline.place(p, c));
-  return {ConstraintMatrix(spline.points(), spline.rows()), 5, bits, values};
+  return {ConstraintMatrix(spline.spline().points(), spline.spline().rows()), 5, bits, values};
 }
 
-inline Selection spline_selection(const testing::C1Spline& spline, const std::vector<int>& anchors,
-                                  int radius) {
+inline Selection spline_selection(const testing::SplineEdits& spline,
+                                  const std::vector<int>& anchors, int radius) {
   return {anchors, spline.derived(anchors, spline.neighbourhood(anchors, radius))};
 }
 
@@ -79,12 +79,12 @@ struct Choice {
 };
 using Chooser = std::function<Choice(std::mt19937&)>;
 
-inline Chooser spline_chooser(const testing::C1Spline& spline) {
+inline Chooser spline_chooser(const testing::SplineEdits& spline) {
   return [&spline](std::mt19937& random) {
     std::vector<int> anchors;
     const size_t count = 1 + random() % 2;
     while (anchors.size() < count) {
-      const int p = static_cast<int>(random() % static_cast<unsigned>(spline.points()));
+      const int p = static_cast<int>(random() % static_cast<unsigned>(spline.spline().points()));
       if (anchors.empty() || anchors[0] != p) anchors.push_back(p);
     }
     return Choice{spline_selection(spline, anchors, static_cast<int>(random() % 3)), 5.0};

@@ -13,8 +13,8 @@ constexpr double kDocumentedShare = 0x1p-24;
 
 TEST(GridEditorChain, TenThousandEditsOfASplineStayExactAndShort) {
   std::mt19937 random(kChainSeed);
-  constexpr long kCells = 5, kSide = 40;
-  const testing::C1Spline spline(kCells, kSide, 7, random);
+  constexpr int kCells = 5, kSide = 40;
+  const testing::SplineEdits spline = testing::small_spline(kCells, kChainSeed);
   GridEditor editor = spline_editor(spline, 40);
   unsigned long coefficient_bits = 0;
   for (int i = 0; i < editor.matrix().rows(); ++i)

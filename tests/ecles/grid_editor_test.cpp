@@ -149,9 +149,27 @@ TEST(GridEditor, WeightsSayWhichParameterMovesLess) {
   }
 }
 
+TEST(GridEditor, WeightsBeyondDoublesStillDecide) {
+  // Both own columns of row 1 are heavier than doubles can say.
+  const Rational huge = Rational(1).scaled_by_power_of_two(1200);
+  const std::vector<RationalTerms> rows = {{{0, 1}, {1, 1}, {4, -1}}, {{2, 1}, {3, 1}, {4, -1}}};
+  GridEditor editor(ConstraintMatrix(5, rows), 1, 20, {{0, 0, 0, 0, 0}});
+  GridOptions options;
+  options.weights = {1, huge, huge, huge};
+  start(editor, {{4}, {0, 1, 2, 3}}, options);
+  const GridUpdate update = editor.update({{1}}, {{0.0, 0.0, 0.0, 0.0}});
+  ASSERT_EQ(update.outcome, Outcome::kDone) << update.reason;
+  EXPECT_EQ(editor.value(0, 0), Rational(1));
+  EXPECT_EQ(editor.value(0, 1), Rational(0));
+  EXPECT_EQ(editor.value(0, 2), fraction(1, 2));
+  expect_constraints(editor);
+  options.weights[1] = 0;
+  EXPECT_THROW(start(editor, {{4}, {0, 1, 2, 3}}, options), PreconditionError);
+}
+
 TEST(GridEditor, ComponentsTooLargeAreSolvedInRationals) {
   std::mt19937 random(kChainSeed);
-  const testing::C1Spline spline(3, 45, 9, random);
+  const testing::SplineEdits spline = testing::small_spline(3, kChainSeed);
   GridEditor editor = spline_editor(spline, 40);
   const Selection selection = spline_selection(spline, {7}, 2);
   GridOptions options;
@@ -198,7 +216,7 @@ TEST(GridEditor, BlocksThatRoundTooFarAreSolvedInRationals) {
 
 TEST(GridEditor, ChainsOfEditsStayExactAndWithinTheBound) {
   std::mt19937 random(kChainSeed);
-  const testing::C1Spline spline(4, 45, 9, random);
+  const testing::SplineEdits spline = testing::small_spline(4, kChainSeed);
   GridEditor editor = spline_editor(spline, 40);
   const ChainResult result = run_chain(editor, spline_chooser(spline), 60, 15, random);
   print(result, "quintic spline, 4 x 4 cells");
@@ -220,12 +238,12 @@ TEST(GridEditor, ChainsOnRandomSystemsStayExactAndWithinTheBound) {
 
 TEST(GridEditor, RequiredAnchorsAreMetOrTheRefusalIsProven) {
   std::mt19937 random(kChainSeed + 2);
-  const testing::C1Spline spline(3, 45, 9, random);
+  const testing::SplineEdits spline = testing::small_spline(3, kChainSeed);
   GridEditor editor = spline_editor(spline, 40);
   int met = 0, refused = 0;
   std::uniform_int_distribution<long> step(-3, 3);
   for (int round = 0; round < 120; ++round) {
-    const int anchor = static_cast<int>(random() % static_cast<unsigned>(spline.points()));
+    const int anchor = static_cast<int>(random() % static_cast<unsigned>(spline.spline().points()));
     const Selection selection = spline_selection(spline, {anchor}, 0);
     const Analysis analysis = analyse(editor.matrix(), selection);
     if (!analysis.strongly_solvable()) continue;

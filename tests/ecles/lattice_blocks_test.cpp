@@ -7,7 +7,7 @@
 
 #include "isochor/ecles/analysis.h"
 #include "isochor/ecles/least_change.h"
-#include "support/c1_spline.h"
+#include "support/spline_edits.h"
 
 namespace isochor::internal {
 namespace {
@@ -40,8 +40,9 @@ Case random_case(int parameters, int rows, long size, std::mt19937& random) {
   }
 }
 
-Case spline_case(const testing::C1Spline& spline, int anchor) {
-  Case result{ConstraintMatrix(spline.points(), spline.rows()), {{anchor}, {}}, {}};
+Case spline_case(const testing::SplineEdits& spline, int anchor) {
+  Case result{
+      ConstraintMatrix(spline.spline().points(), spline.spline().rows()), {{anchor}, {}}, {}};
   result.selection.derived = spline.derived({anchor}, spline.neighbourhood({anchor}, 1));
   result.independent = analyse(result.matrix, result.selection).independent;
   return result;
@@ -51,7 +52,7 @@ std::vector<Case> cases() {
   std::mt19937 random(kSeed);
   std::vector<Case> result;
   for (int k = 0; k < 12; ++k) result.push_back(random_case(20 + 4 * k, 5 + k, 40, random));
-  const testing::C1Spline spline(3, 40, 7, random);
+  const testing::SplineEdits spline = testing::small_spline(3, kSeed);
   for (const int anchor : {0, 20, 40}) result.push_back(spline_case(spline, anchor));
   return result;
 }

@@ -77,8 +77,17 @@ inline std::vector<int> first_basis(const ConstraintMatrix& matrix, std::vector<
   return basis;
 }
 
-enum class SystemKind { kDense, kSparse, kLowRank, kLastPlace, kModulus, kHuge, kRepeated };
-constexpr int kSystemKinds = 7;
+enum class SystemKind {
+  kDense,
+  kSparse,
+  kLowRank,    // dependent rows are combinations of all others, some moved by a multiple of primes
+  kLastPlace,  // by one unit in the last place of a double
+  kModulus,    // coefficients are multiples of the primes that eliminations use
+  kHuge,       // and tiny
+  kRepeated,
+  kHeavy  // a few long rows over many short ones
+};
+constexpr int kSystemKinds = 8;
 
 struct RandomSystem {
   int parameters = 0;
@@ -95,12 +104,15 @@ class SystemGenerator {
   int number(int low, int high) { return std::uniform_int_distribution<int>(low, high)(random_); }
 
   RandomSystem next(SystemKind kind, int largest) {
-    const int m = number(0, largest), n = number(0, largest);
+    const bool heavy = kind == SystemKind::kHeavy;
+    const int m = heavy ? number(10, 24) : number(0, largest);
+    const int n = heavy ? number(30, 50) : number(0, largest);
     RandomSystem system;
     system.parameters = n;
     std::vector<RationalRow> dense(static_cast<size_t>(m), RationalRow(static_cast<size_t>(n)));
     for (RationalRow& row : dense) {
-      for (Rational& a : row) a = entry(kind);
+      const int others = heavy && number(0, 5) != 0 ? number(15, 40) : 0;
+      for (Rational& a : row) a = number(0, others) < 2 ? entry(kind) : Rational(0);
     }
     make_dependent(kind, dense);
     for (const RationalRow& row : dense) {
@@ -149,10 +161,11 @@ class SystemGenerator {
     for (int i = basis; i < m; ++i) {
       RationalRow& row = rows[static_cast<size_t>(i)];
       for (Rational& a : row) a = Rational(0);
+      const bool low_rank = kind == SystemKind::kLowRank;
       const int terms = kind == SystemKind::kRepeated ? 1 : number(1, std::min(basis, 3));
-      for (int k = 0; k < terms; ++k) {
-        const RationalRow& other = rows[static_cast<size_t>(number(0, basis - 1))];
-        const Rational factor(number(0, 1) == 0 ? 1 : -1);
+      for (int k = 0; k < (low_rank ? basis : terms); ++k) {
+        const RationalRow& other = rows[static_cast<size_t>(low_rank ? k : number(0, basis - 1))];
+        const Rational factor(low_rank ? number(1, 9) : (number(0, 1) == 0 ? 1 : -1));
         for (size_t j = 0; j < row.size(); ++j) row[j] += factor * other[j];
       }
       if (!row.empty() && number(0, 2) == 0) disturb(kind, row);
@@ -163,7 +176,7 @@ class SystemGenerator {
     Rational& a = row[static_cast<size_t>(number(0, static_cast<int>(row.size()) - 1))];
     if (kind == SystemKind::kLastPlace) {
       a = Rational(std::nextafter(a.to_double(), 1e300));
-    } else if (kind == SystemKind::kModulus) {
+    } else if (kind == SystemKind::kModulus || kind == SystemKind::kLowRank) {
       a += modulus();
     } else {
       a += Rational(1);

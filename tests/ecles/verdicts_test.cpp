@@ -3,7 +3,7 @@
 namespace isochor {
 namespace {
 
-TEST(Verdicts, RightOnRandomSystems) { testing::expect_all_right(1000, 4); }
+TEST(Verdicts, RightOnRandomSystems) { testing::expect_all_right(800, 4); }
 
 }  // namespace
 }  // namespace isochor

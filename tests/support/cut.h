@@ -9,6 +9,7 @@
 #include "isochor/bspline/model_refinement.h"
 #include "isochor/bspline/refinement.h"
 #include "support/models.h"
+#include "support/splines.h"
 
 namespace isochor::testing {
 
@@ -95,6 +96,33 @@ inline void stretch(Patch& patch, Direction direction, double factor) {
   std::vector<double> values = knots.knots();
   for (double& t : values) t *= factor;
   knots = KnotVector(knots.degree(), values);
+}
+
+// Bezier patches built to meet with these factors; the last row is random.
+inline PatchModel curvature_pair(double lambda, double mu) {
+  std::mt19937 random(8);
+  const KnotVector knots = KnotVector::uniform(3, 1);
+  const auto points = random_points(random, 32);
+  PatchModel model =
+      make_separate_model({Surface(knots, knots, {points.begin(), points.begin() + 16}),
+                           Surface(knots, knots, {points.begin() + 16, points.end()})});
+  for (size_t j = 0; j < 4; ++j) {
+    const auto a = [&](size_t i) -> Vec3& { return model.points[4 * i + j]; };
+    const auto b = [&](size_t i) -> Vec3& { return model.points[16 + 4 * i + j]; };
+    for (size_t i = 0; i < 4; ++i) {
+      const auto x = static_cast<double>(i);
+      const auto y = static_cast<double>(j);
+      a(i) = 0.2 * a(i) + Vec3(x, y, 0.0);
+      b(i) = 0.2 * b(i) + Vec3(3.0 + x, y, 0.0);
+    }
+    b(0) = a(3);
+    const Vec3 speed = a(3) - a(2);
+    b(1) = b(0) + lambda * speed;
+    b(2) = 2 * b(1) - b(0) + lambda * lambda * (a(3) - 2 * a(2) + a(1)) + mu * 0.5 * speed;
+    model.ties.push_back({12 + static_cast<int>(j), 16 + static_cast<int>(j)});
+  }
+  model.joins = find_joins(model);
+  return model;
 }
 
 }  // namespace isochor::testing

@@ -253,9 +253,17 @@ inline int expect_rows_keep_the_skin(const PatchModel& model,
   const ContinuityRows rows = continuity_rows(model, relations, coarse);
   EXPECT_EQ(rows.inexpressible.size(), inexpressible);
   for (const ContinuityRow& row : rows.rows) {
+    const SmoothRelation& relation = relations[static_cast<size_t>(row.relation)];
     Rational sum;
-    for (const GridTerm& term : row.terms) sum += term.value;
-    EXPECT_EQ(sum, Rational(0)) << relations[static_cast<size_t>(row.relation)].text;
+    Integer common(1);
+    for (const GridTerm& term : row.terms) {
+      sum += term.value;
+      common = lcm(common, term.value.denominator());
+    }
+    if (relation.kind != SmoothRelation::Kind::kPole) {
+      EXPECT_LE(common.bits(), 65u) << "short";
+    }
+    EXPECT_EQ(sum, Rational(0)) << relation.text;
   }
   const CoarseSpace space(model, coarse);
   const Seams before = seams_of(model, model.points);

@@ -111,6 +111,21 @@ int TriangleSpline::point(int triangle, const std::array<int, 3>& vertices,
          before + j - 1;
 }
 
+std::array<std::int64_t, 2> TriangleSpline::position(int vertex) const {
+  return {positions_[index(vertex)].x, positions_[index(vertex)].y};
+}
+
+std::vector<TriangleSpline::ControlPoint> TriangleSpline::control_points(int triangle) const {
+  std::vector<ControlPoint> result;
+  for (int i = 0; i <= options_.degree; ++i) {
+    for (int j = 0; i + j <= options_.degree; ++j) {
+      const std::array<int, 3> weights{i, j, options_.degree - i - j};
+      result.push_back({point(triangle, corners(triangle), weights), weights});
+    }
+  }
+  return result;
+}
+
 Integer TriangleSpline::area(int a, int b, int c) const {
   const Position &p = positions_[index(a)], &q = positions_[index(b)], &r = positions_[index(c)];
   return Integer(q.x - p.x) * Integer(r.y - p.y) - Integer(q.y - p.y) * Integer(r.x - p.x);

@@ -36,7 +36,18 @@ class TriangleSpline {
 
   int points() const;
   int triangles() const { return static_cast<int>(triangles_.size()); }
+  const std::array<int, 3>& corners(int triangle) const {
+    return triangles_[static_cast<size_t>(triangle)];
+  }
+  // In units of the grid that vertices lie on.
+  std::array<std::int64_t, 2> position(int vertex) const;
+  struct ControlPoint {
+    int point = 0;
+    std::array<int, 3> weights{};  // at the triangle's corners; their sum is the degree
+  };
+  std::vector<ControlPoint> control_points(int triangle) const;
   int vertex(int column, int row) const { return row * (options_.columns + 1) + column; }
+  int middle() const { return vertex(options_.columns / 2, options_.rows / 2); }
   std::vector<RationalTerms> rows() const;
   ConstraintMatrix matrix() const { return {points(), rows()}; }
 

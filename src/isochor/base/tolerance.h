@@ -90,12 +90,14 @@ inline constexpr double kSameRow = 1e-12;
 
 // Two strips of surface meet by constant factors when |H_n+ - lambda H_n- - rho H| (and the
 // relation of second derivatives) stays below kSmoothResidual times the terms it is made of.
-// Dimensionless: poles written with twelve digits pass; what is left is carried through edits
-// unchanged.
-inline constexpr double kSmoothResidual = 1e-10;
+// Dimensionless: an edit that turns the surface by an angle a changes the angle between the strips
+// by at most about a * kSmoothResidual, a hundredth of kSmoothAngle; seams of lofts written by CAD
+// reach 3e-7.
+inline constexpr double kSmoothResidual = 1e-6;
 
 // A factor measured on poles that are doubles is taken as the simplest rational within this part of
-// itself (or within the residual, if that is larger). Dimensionless: some hundred roundings.
+// itself, or farther off where that does not make the residual worse. Dimensionless: some hundred
+// roundings.
 inline constexpr double kFactorNoise = 2e-14;
 
 // Weights near a line are products w_ij = a_i b_j when they differ from them by at most this part.

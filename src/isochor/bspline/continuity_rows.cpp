@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "isochor/base/tolerance.h"
@@ -31,36 +32,78 @@ class EquationPool {
  public:
   // Replaces `equation` by a stored one (its own strips and rows kept) or stores it.
   void share(LineEquation* equation, double noise) {
-    std::vector<Rational> values;
-    for (const LineTerm& term : *equation) values.push_back(term.value);
-    for (const std::vector<Rational>& known : known_) {
-      if (known.size() != values.size()) continue;
-      if (agree(known, values, noise)) return assign(known, equation);
-      const std::vector<Rational> reversed(known.rbegin(), known.rend());
-      if (agree(reversed, values, noise)) return assign(reversed, equation);
+    std::vector<double> values;
+    for (const LineTerm& term : *equation) values.push_back(term.value.to_double());
+    for (const Known& known : known_) {
+      if (agree(known.rounded, values, noise)) {
+        return assign(known.exact.begin(), equation);
+      }
+      std::reverse(values.begin(), values.end());
+      const bool reversed = agree(known.rounded, values, noise);
+      std::reverse(values.begin(), values.end());
+      if (reversed) return assign(known.exact.rbegin(), equation);
     }
-    known_.push_back(std::move(values));
+    shorten(equation);
+    Known known;
+    for (const LineTerm& term : *equation) {
+      known.exact.push_back(term.value);
+      known.rounded.push_back(term.value.to_double());
+    }
+    known_.push_back(std::move(known));
+  }
+
+  // Long fractions (products of weights and knots) become whole multiples of 2^-64 of the largest
+  // one, which takes up the difference: the sum stays exactly zero. Nothing is lost, because what
+  // equations of crossing lines share is only that each has one set of values for the whole line.
+  static void shorten(LineEquation* equation) {
+    constexpr unsigned long kBits = 64;
+    const auto largest = std::max_element(
+        equation->begin(), equation->end(),
+        [](const LineTerm& a, const LineTerm& b) { return a.value.abs() < b.value.abs(); });
+    const Rational scale = largest->value;
+    Integer common(1);
+    for (LineTerm& term : *equation) {
+      term.value /= scale;
+      common = lcm(common, term.value.denominator());
+    }
+    if (common.bits() <= kBits) return;
+    Rational rest;
+    for (auto term = equation->begin(); term != equation->end(); ++term) {
+      if (term == largest) continue;
+      const Integer steps =
+          term->value.numerator().shifted(kBits).divided_nearest(term->value.denominator());
+      term->value = Rational(steps).scaled_by_power_of_two(-static_cast<long>(kBits));
+      rest += term->value;
+    }
+    largest->value = -rest;
   }
 
  private:
-  static bool agree(const std::vector<Rational>& a, const std::vector<Rational>& b, double noise) {
-    size_t largest = 0;
-    for (size_t k = 1; k < a.size(); ++k) {
-      if (a[largest].abs() < a[k].abs()) largest = k;
-    }
-    const double scale = (b[largest] / a[largest]).to_double();
-    const double size = std::abs(b[largest].to_double());
+  struct Known {
+    std::vector<Rational> exact;
+    std::vector<double> rounded;
+  };
+
+  // Whether b is a multiple of a, within `noise` of its largest value.
+  static bool agree(const std::vector<double>& a, const std::vector<double>& b, double noise) {
+    if (a.size() != b.size()) return false;
+    const auto smaller = [](double x, double y) { return std::abs(x) < std::abs(y); };
+    const auto largest =
+        static_cast<size_t>(std::max_element(a.begin(), a.end(), smaller) - a.begin());
+    const double scale = b[largest] / a[largest];
+    const double size = std::abs(b[largest]);
     for (size_t k = 0; k < a.size(); ++k) {
-      if (!(std::abs(scale * a[k].to_double() - b[k].to_double()) <= noise * size)) return false;
+      if (!(std::abs(scale * a[k] - b[k]) <= noise * size)) return false;
     }
     return true;
   }
 
-  static void assign(const std::vector<Rational>& values, LineEquation* equation) {
-    for (size_t k = 0; k < values.size(); ++k) (*equation)[k].value = values[k];
+  template <typename Values>
+  static void assign(Values values, LineEquation* equation) {
+    for (LineTerm& term : *equation) term.value = *values++;
   }
 
-  std::vector<std::vector<Rational>> known_;
+  std::vector<Known> known_;
 };
 
 class RowMaker {
@@ -69,17 +112,26 @@ class RowMaker {
       : model_(model), grids_(model, coarse) {}
 
   ContinuityRows run(const std::vector<SmoothRelation>& relations) {
-    // Lines first: what poles ask for has to agree with them.
-    for (bool poles : {false, true}) {
-      for (int k = 0; k < static_cast<int>(relations.size()); ++k) {
-        const SmoothRelation& relation = relations[static_cast<size_t>(k)];
-        if ((relation.kind == Kind::kPole) != poles) continue;
-        const bool stated =
-            poles ? internal::add_pole_rows(model_, relation, k, &grids_, &result_.rows)
-                  : add_line(k, relation);
-        if (!stated) result_.inexpressible.push_back(k);
+    // Lines first: what poles ask for has to agree with them. Well-measured lines before others,
+    // which then take over their equations.
+    std::vector<int> order(relations.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+      const SmoothRelation& first = relations[static_cast<size_t>(a)];
+      const SmoothRelation& second = relations[static_cast<size_t>(b)];
+      if ((first.kind == Kind::kPole) != (second.kind == Kind::kPole)) {
+        return second.kind == Kind::kPole;
       }
+      return first.residual < second.residual;
+    });
+    for (int k : order) {
+      const SmoothRelation& relation = relations[static_cast<size_t>(k)];
+      const bool stated = relation.kind == Kind::kPole
+                              ? internal::add_pole_rows(model_, relation, k, &grids_, &result_.rows)
+                              : add_line(k, relation);
+      if (!stated) result_.inexpressible.push_back(k);
     }
+    std::sort(result_.inexpressible.begin(), result_.inexpressible.end());
     return std::move(result_);
   }
 
@@ -166,7 +218,7 @@ class RowMaker {
     }
     const int wrap = grids_.period(at[0].patch, other(at[0].across));
     const int count = wrap > 0 ? wrap : along.size();
-    const double noise = std::max(kSameRow, 4.0 * relation.residual);
+    const double noise = std::max(kSameRow, 2.0 * relation.residual);
     std::vector<ContinuityRow> rows;
     for (const std::vector<LineEquation>& equations : relation.equations) {
       if (equations.size() > 1 && !same_along(at)) return false;
@@ -174,7 +226,8 @@ class RowMaker {
       for (const LineEquation& equation : equations) {
         LineEquation shared = coarsened(at, equation);
         order_across(&shared);
-        if (!shared.empty()) pool_.share(&shared, noise);
+        if (equations.size() == 1 && !shared.empty()) pool_.share(&shared, noise);
+        if (equations.size() > 1 && !shared.empty()) EquationPool::shorten(&shared);
         coarse_equations.push_back(std::move(shared));
       }
       for (int b = 0; b < count; ++b) {

@@ -133,14 +133,28 @@ double fitted_factor(const std::vector<Vec3>& above, const std::vector<Vec3>& be
 }
 
 // The simplest rational within `noise` of a measured value, a known one first.
-Rational settled(double value, double noise, std::vector<Rational>* known) {
+Rational simplest_near(double value, double noise, const std::vector<Rational>& known) {
   const Rational low = Rational(value) - Rational(noise);
   const Rational high = Rational(value) + Rational(noise);
-  for (const Rational& factor : *known) {
+  for (const Rational& factor : known) {
     if (low <= factor && factor <= high) return factor;
   }
-  known->push_back(simplest_between(low, high));
-  return known->back();
+  return simplest_between(low, high);
+}
+
+// A simple rational near a measured value that does not make the residual (relative, in units of
+// `unit` for the value) noticeably worse. The wider the search, the simpler it is.
+template <typename Residual>
+Rational settled(double value, double unit, Residual residual, std::vector<Rational>* known) {
+  const double measured = residual(value);
+  Rational found;
+  for (double share : {4.0, 1.0, 0.25, 0.0}) {
+    const double noise = unit * std::max(kFactorNoise, share * measured);
+    found = simplest_near(value, noise, *known);
+    if (residual(found.to_double()) <= 1.25 * measured + kFactorNoise) break;
+  }
+  if (std::find(known->begin(), known->end(), found) == known->end()) known->push_back(found);
+  return found;
 }
 
 // Largest |above - factor * below| and largest size.
@@ -175,10 +189,10 @@ class Fit {
     const std::vector<Vec3> below = values(below_, 0);
     const double raw = fitted_factor(values(above_, 0), below);
     if (!(raw > 0.0) || !std::isfinite(raw)) return false;
-    const double first = misfit(0, raw, 0.0).relative();
-    if (!(first <= kSmoothResidual)) return false;
-    const Rational lambda = settled(raw, raw * std::max(kFactorNoise, first), known);
-    relation->residual = misfit(0, lambda.to_double(), 0.0).relative();
+    const auto residual = [&](double factor) { return misfit(0, factor, 0.0).relative(); };
+    if (!(residual(raw) <= kSmoothResidual)) return false;
+    const Rational lambda = settled(raw, raw, residual, known);
+    relation->residual = residual(lambda.to_double());
     relation->lambda = lambda;
     relation->mu = Rational();
     return relation->order < 2 || run_second(relation, known, below);
@@ -194,14 +208,12 @@ class Fit {
     }
     const double raw = fitted_factor(rest, below);
     if (!std::isfinite(raw)) return false;
-    const Misfit second = misfit(1, lambda * lambda, raw);
-    if (!(second.relative() <= kSmoothResidual)) return false;
+    const auto residual = [&](double mu) { return misfit(1, lambda * lambda, mu).relative(); };
+    if (!(residual(raw) <= kSmoothResidual)) return false;
     double speed = 0.0;
     for (const Vec3& v : below) speed = std::max(speed, v.norm());
-    const double noise = std::max(kFactorNoise, second.relative()) * second.size / speed;
-    relation->mu = settled(raw, noise, known);
-    relation->residual = std::max(relation->residual,
-                                  misfit(1, lambda * lambda, relation->mu.to_double()).relative());
+    relation->mu = settled(raw, misfit(1, lambda * lambda, raw).size / speed, residual, known);
+    relation->residual = std::max(relation->residual, residual(relation->mu.to_double()));
     return true;
   }
 

@@ -404,7 +404,7 @@ bool add_pole_rows(const PatchModel& model, const SmoothRelation& relation, int 
   std::vector<ClassEquation> equations = equations_between(second, *rows);
   std::vector<std::pair<int, ClassEquation>> reduced;
   if (!reduce(&equations, a, b, &reduced)) return false;
-  const double noise = std::max(kFactorNoise, plane->residual);
+  const double noise = std::max(kFactorNoise, 0.25 * plane->residual);
   const std::vector<Rational> alpha = settled(plane->alpha, noise, reduced);
   const std::vector<Rational> beta = settled(plane->beta, noise, reduced);
   if (alpha.empty() || beta.empty()) return false;

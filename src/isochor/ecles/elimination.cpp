@@ -8,21 +8,25 @@ size_t index(int i) { return static_cast<size_t>(i); }
 }  // namespace
 
 void Elimination::load(int row) {
-  for (const LocalTerm& term : system_.row(row))
-    vector_[index(term.column)] = field_.of(*term.value);
+  for (const LocalTerm& term : system_.row(row)) {
+    vector_[index(term.column)] = term.is_word ? field_.of(term.word) : field_.of(*term.value);
+  }
 }
 
 void Elimination::reduce(int first) {
   coefficients_.resize(pivots_.size());
+  const PrimeField field = field_;  // in registers: writing residues cannot change it
+  Residue* const vector = vector_.data();
   for (size_t k = index(first); k < pivots_.size(); ++k) {
     const Pivot& pivot = pivots_[k];
-    const Residue coefficient = vector_[index(pivot.column)];
+    const Residue coefficient = vector[pivot.column];
     coefficients_[k] = coefficient;
     if (coefficient == 0) continue;
-    const PrimeField::Factor factor = field_.factor(coefficient);
-    for (size_t t = pivot.upper_begin; t < pivot.upper_end; ++t) {
-      Residue& target = vector_[index(upper_[t].index)];
-      target = field_.subtract(target, field_.multiply(upper_[t].value, factor));
+    const PrimeField::Factor factor = field.factor(field.negative(coefficient));
+    const Entry* const end = upper_.data() + pivot.upper_end;
+    for (const Entry* entry = upper_.data() + pivot.upper_begin; entry != end; ++entry) {
+      Residue& target = vector[entry->index];
+      target = field.add(target, field.multiply(entry->value, factor));
     }
   }
 }

@@ -153,8 +153,13 @@ Rational GridEditor::row_value(int component, int row) const {
 
 GridPlan GridEditor::initialize(const Selection& selection, const Analysis& analysis,
                                 const GridOptions& options) {
-  std::vector<double> weights;
-  for (const Rational& weight : options.weights) weights.push_back(weight.to_double());
+  std::vector<double>
+      weights;  // relative to the smallest, so that they fit doubles or are infinite
+  if (!options.weights.empty()) {
+    const Rational least = *std::min_element(options.weights.begin(), options.weights.end());
+    ISOCHOR_REQUIRE(least.sign() > 0, least.to_string());
+    for (const Rational& weight : options.weights) weights.push_back((weight / least).to_double());
+  }
   LeastChange optimum(matrix_, selection.derived, analysis.independent, options.weights);
   internal::LatticeBlocks blocks(
       matrix_, selection, analysis.independent, weights,

@@ -86,6 +86,7 @@ struct GridUpdate {
   double bound = 0.0;     // the same, a priori: the plan's bound plus the slack of the doubles
 };
 
+// Copies share the lattices met so far: edit them on one thread.
 class GridEditor {
  public:
   // values[component][parameter]: exact multiples of 1 / (denominator 2^bits) within 64 bits,

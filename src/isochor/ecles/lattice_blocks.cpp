@@ -20,6 +20,30 @@ int root_of(std::vector<int>& parent, int i) {
   return i;
 }
 
+// Replaces the vectors by a basis of those combinations whose given entry is a multiple.
+void keep_multiples(IntegerVectors& vectors, size_t entry, const Integer& modulus) {
+  const int count = static_cast<int>(vectors.size());
+  IntegerMatrix row(1, count + 1);
+  bool all = true;
+  for (int k = 0; k < count; ++k) {
+    const Integer& value = vectors[static_cast<size_t>(k)][entry];
+    row.set(0, k, value - value.divided_floor(modulus) * modulus);
+    all = all && row.at(0, k).is_zero();
+  }
+  if (all) return;
+  row.set(0, count, modulus);
+  const SolutionLattice combinations(
+      row, std::vector<Integer>(static_cast<size_t>(count) + 1, Integer(1)));
+  IntegerVectors result;
+  for (const auto& combination : combinations.kernel()) {
+    result.emplace_back(vectors[0].size());
+    for (size_t k = 0; k < vectors.size(); ++k)
+      for (size_t j = 0; j < result.back().size(); ++j)
+        if (!combination[k].is_zero()) result.back()[j].add_product(combination[k], vectors[k][j]);
+  }
+  vectors = std::move(result);
+}
+
 }  // namespace
 
 // The rows by position in A and in D.
@@ -115,42 +139,41 @@ AnchorLattice::AnchorLattice(size_t anchors) : basis_(anchors, std::vector<Integ
   for (size_t k = 0; k < anchors; ++k) basis_[k][k] = 1;
 }
 
+// Row after row of hermite w == coefficients z: every w_i is a linear function of z, known by its
+// values on the basis, and must be an integer.
 void AnchorLattice::restrict_to(const IntegerMatrix& coefficients, const IntegerVectors& hermite) {
-  const auto m = hermite.size();
+  const size_t m = hermite.size(), n = basis_.size();
   std::vector<size_t> touched;
-  std::vector<std::vector<Integer>> products;  // coefficients times the touched basis vectors
-  for (size_t k = 0; k < basis_.size(); ++k) {
-    std::vector<Integer> product(m);
+  IntegerVectors vectors;  // basis vector, its coefficients' products, its w
+  for (size_t k = 0; k < n; ++k) {
+    std::vector<Integer> vector = basis_[k];
+    vector.resize(n + 2 * m);
     bool any = false;
     for (size_t i = 0; i < m; ++i) {
-      for (size_t j = 0; j < basis_.size(); ++j)
-        product[i].add_product(coefficients.at(static_cast<int>(i), static_cast<int>(j)),
-                               basis_[k][j]);
-      any = any || !product[i].is_zero();
+      for (size_t j = 0; j < n; ++j)
+        vector[n + i].add_product(coefficients.at(static_cast<int>(i), static_cast<int>(j)),
+                                  basis_[k][j]);
+      any = any || !vector[n + i].is_zero();
     }
     if (!any) continue;
     touched.push_back(k);
-    products.push_back(std::move(product));
+    vectors.push_back(std::move(vector));
   }
   if (touched.empty()) return;
-  // Combinations t of the touched vectors with products t == hermite w for some w.
-  IntegerMatrix system(static_cast<int>(m), static_cast<int>(touched.size() + m));
   for (size_t i = 0; i < m; ++i) {
-    for (size_t k = 0; k < touched.size(); ++k)
-      system.set(static_cast<int>(i), static_cast<int>(k), products[k][i]);
-    for (size_t k = 0; k < hermite[i].size(); ++k)
-      system.set(static_cast<int>(i), static_cast<int>(touched.size() + k), hermite[i][k]);
+    for (auto& vector : vectors) {
+      vector[n + m + i] = vector[n + i];
+      for (size_t k = 0; k < i; ++k)
+        vector[n + m + i].add_product(-hermite[i][k], vector[n + m + k]);
+    }
+    const Integer& modulus = hermite[i][i];
+    if (modulus == Integer(1)) continue;
+    keep_multiples(vectors, n + m + i, modulus);
+    for (auto& vector : vectors) vector[n + m + i] = vector[n + m + i].divided_exactly(modulus);
   }
-  const IntegerMatrix kernel = system.kernel_lattice();
-  IntegerVectors replaced;
-  for (int t = 0; t < kernel.rows(); ++t) {
-    replaced.emplace_back(basis_.size());
-    for (size_t k = 0; k < touched.size(); ++k)
-      for (size_t j = 0; j < basis_.size(); ++j)
-        replaced.back()[j].add_product(kernel.at(t, static_cast<int>(k)), basis_[touched[k]][j]);
-  }
-  reduce_basis(replaced);
-  for (size_t k = 0; k < touched.size(); ++k) basis_[touched[k]] = std::move(replaced[k]);
+  for (auto& vector : vectors) vector.resize(n);
+  reduce_basis(vectors);
+  for (size_t k = 0; k < touched.size(); ++k) basis_[touched[k]] = std::move(vectors[k]);
   for (const auto& vector : basis_)
     for (const Integer& entry : vector) fits_ = fits_ && entry.to_long();
   if (fits_) rounding_ = NearestPlane(basis_);
@@ -323,12 +346,16 @@ void LatticeBlocks::build_peeled(const System& system, int index, LatticeCache& 
   blocks_.push_back(std::move(block));
 }
 
-// How far the private column moves for one unit of the row's rest, at least change.
+// How far the private column moves for one unit of the row's rest, at least change; where all
+// weights are too heavy for doubles, as if they were equal.
 double LatticeBlocks::peeled_share(const LatticeBlock& block, size_t column) const {
-  double square = 0.0;
-  for (size_t j = 0; j < block.columns.size(); ++j)
-    square += inverse_weights_[static_cast<size_t>(block.columns[j])] * block.coefficients[j] *
-              block.coefficients[j];
+  double square = 0.0, unweighted = 0.0;
+  for (size_t j = 0; j < block.columns.size(); ++j) {
+    const double term = block.coefficients[j] * block.coefficients[j];
+    square += inverse_weights_[static_cast<size_t>(block.columns[j])] * term;
+    unweighted += term;
+  }
+  if (!(square > 0.0)) return block.coefficients[column] / unweighted;
   return inverse_weights_[static_cast<size_t>(block.columns[column])] * block.coefficients[column] /
          square;
 }

@@ -216,11 +216,21 @@ Sum fixed_part(const Row& row, const std::vector<double>& right_sides,
   return fixed;
 }
 
+// The same in plain doubles: enough for a first guess.
+double rough_rest_of(const Row& row, const Sum& fixed, const std::vector<double>& x) {
+  double rest = fixed.value.high();
+  for (const Term& term : row.inner)
+    rest -= term.approximate.high() * x[static_cast<size_t>(term.index)];
+  return rest;
+}
+
 // x += U A^T S^-1 (b - A x); returns the largest change.
-double refine(const Block& block, const std::vector<Sum>& fixed, std::vector<double>& x) {
+double refine(const Block& block, const std::vector<Sum>& fixed, bool rough,
+              std::vector<double>& x) {
   std::vector<double> rests;
   for (size_t i = 0; i < block.rows.size(); ++i)
-    rests.push_back(rest_of(block.rows[i], fixed[i], x).value.high());
+    rests.push_back(rough ? rough_rest_of(block.rows[i], fixed[i], x)
+                          : rest_of(block.rows[i], fixed[i], x).value.high());
   const std::vector<double> y = block.system.solve_scaled(rests);
   std::vector<double> change(x.size());
   for (size_t i = 0; i < block.rows.size(); ++i)
@@ -361,8 +371,9 @@ LeastChange::Approximation LeastChange::approximate(const std::vector<double>& r
     for (const int c : block.columns) x.push_back(result.derived[static_cast<size_t>(c)]);
     for (const Row& row : block.rows) fixed.push_back(fixed_part(row, right_sides, values));
     if (block.approximable) {
-      for (int pass = 0; pass < 2; ++pass) refine(block, fixed, x);
-      result.last_change = std::max(result.last_change, refine(block, fixed, x));
+      refine(block, fixed, true, x);
+      refine(block, fixed, false, x);
+      result.last_change = std::max(result.last_change, refine(block, fixed, false, x));
     } else {
       solve_rounded(block, right_sides, values, x);
     }

@@ -109,6 +109,14 @@ std::vector<Block> connected_blocks(const LocalSystem& system, const std::vector
       }
     }
   }
+  std::vector<int> count(index(system.columns));
+  for (const int row : rows) {
+    for (const LocalTerm& term : system.row(row)) ++count[index(term.column)];
+  }
+  for (Block& block : blocks) {
+    std::stable_sort(block.columns.begin(), block.columns.end(),
+                     [&](int a, int b) { return count[index(a)] < count[index(b)]; });
+  }
   return blocks;
 }
 
