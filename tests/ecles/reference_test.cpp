@@ -188,6 +188,25 @@ struct Seen {
   int minimised = 0;
 };
 
+// (9.4): 2 w (p'' - p') + A^^T Lambda == 0, where A^ are the stored multiples of the given rows.
+void expect_multipliers(const ConstraintMatrix& matrix, const System& system,
+                        const std::vector<int>& independent, const ReferenceSolution& solution,
+                        const Table& weighted_change) {
+  ASSERT_EQ(static_cast<size_t>(solution.multipliers.rows()), independent.size());
+  for (size_t s = 0; s < weighted_change.size(); ++s) {
+    const auto parameter = static_cast<size_t>(system.selection.derived[s]);
+    for (int c = 0; c < system.components; ++c) {
+      Rational sum = weighted_change[s][static_cast<size_t>(c)] * Rational(2);
+      for (size_t k = 0; k < independent.size(); ++k) {
+        const Rational& given = system.rows[static_cast<size_t>(independent[k])][parameter];
+        sum +=
+            matrix.scale(independent[k]) * given * solution.multipliers.at(static_cast<int>(k), c);
+      }
+      EXPECT_TRUE(sum.is_zero());
+    }
+  }
+}
+
 void expect_laws(std::mt19937_64& random, const System& system, Simplification simplification,
                  Seen& seen) {
   const ConstraintMatrix matrix(system.parameters, terms_of(system.rows));
@@ -241,6 +260,11 @@ void expect_laws(std::mt19937_64& random, const System& system, Simplification s
     }
   }
   EXPECT_TRUE(all_zero(residual(system, relevant, state)));
+  if (static_cast<int>(rank) < derived) {
+    expect_multipliers(matrix, system, editor.independent(), *result, change);
+  } else {
+    EXPECT_EQ(result->multipliers.rows(), 0);
+  }
   EXPECT_TRUE(test::in_column_space(
       test::transposed(relevant.derived, static_cast<size_t>(derived)), change));
 }

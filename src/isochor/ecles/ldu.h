@@ -8,7 +8,7 @@
 // triangular (U^), all three integer, and two permutations. The pivot of a step is the nonzero
 // entry of least magnitude left, the first such row by row.
 //
-// Laws (tests of those names in tests/ecles/ldu_test.cpp):
+// Laws (tests/ecles/ldu_test.cpp):
 //  (1) factors:   product(factor_ldu(A, s)) == A for every A and simplification s
 //  (2) rank:      r is the rank; the rows row_order[0..r) of A are independent
 //  (3) Turner:    with pivots p_k, the entries are minors of A: D = diag(p1, p1 p2, p2 p3, ...),

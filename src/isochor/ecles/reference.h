@@ -10,7 +10,7 @@
 // the result; w the weights, M = diag(2 w); A^ the r independent rows of R_ED, B^ their right
 // sides.
 //
-// Laws (tests of those names in tests/ecles/reference_test.cpp):
+// Laws (tests/ecles/reference_test.cpp):
 //  (1) constraints: R_E p'' == q_E, exactly, whenever update() gives a result
 //  (2) verdicts:    strongly_solvable() iff rank [R_ED R_EA] == rank R_ED; weakly_solvable() iff
 //  some

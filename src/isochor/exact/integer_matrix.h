@@ -3,7 +3,7 @@
 // A value type: row-major Integers, with FLINT's algorithms behind it. Any of the two sizes may be
 // zero; a product over nothing is zero, the determinant of the 0 x 0 matrix is 1.
 //
-// Laws (tests of those names in tests/exact/integer_matrix_test.cpp):
+// Laws (tests/exact/integer_matrix_test.cpp):
 //  (1) ring:       (A B) C == A (B C), transpose(A B) == transpose(B) transpose(A)
 //  (2) determinant: determinant(A B) == determinant(A) determinant(B); nonzero iff rank(A) == n
 //  (3) Hermite:    transform A == form, |determinant(transform)| == 1

@@ -3,7 +3,7 @@
 // A value type: row-major Rationals, with FLINT's algorithms behind it. Any of the two sizes may be
 // zero; a product over nothing is zero.
 //
-// Laws (tests of those names in tests/exact/rational_matrix_test.cpp):
+// Laws (tests/exact/rational_matrix_test.cpp):
 //  (1) ring:     (A B) C == A (B C), A (B + C) == A B + A C
 //  (2) inverse:  A inverse(A) == inverse(A) A == 1; there is none exactly when rank(A) < n
 //  (3) solve:    A solve(A, B) == B, and there is no solution exactly when A is singular
