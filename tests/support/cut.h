@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "isochor/bspline/joins.h"
@@ -96,6 +97,38 @@ inline void stretch(Patch& patch, Direction direction, double factor) {
   std::vector<double> values = knots.knots();
   for (double& t : values) t *= factor;
   knots = KnotVector(knots.degree(), values);
+}
+
+// The same patch run through differently: bit 0 of `how` reverses u, bit 1 reverses v, bit 2 swaps
+// the two afterwards.
+inline Patch reoriented(const Patch& patch, int how) {
+  const auto mirrored = [](const KnotVector& knots) {
+    std::vector<double> values;
+    for (int k = static_cast<int>(knots.knots().size()) - 1; k >= 0; --k) {
+      values.push_back(knots.begin() + knots.end() - knots[k]);
+    }
+    return KnotVector(knots.degree(), values);
+  };
+  const bool flip_u = (how & 1) != 0;
+  const bool flip_v = (how & 2) != 0;
+  const bool swap = (how & 4) != 0;
+  Patch result = patch;
+  if (flip_u) result.u_knots = mirrored(patch.u_knots);
+  if (flip_v) result.v_knots = mirrored(patch.v_knots);
+  if (swap) std::swap(result.u_knots, result.v_knots);
+  for (int i = 0; i < patch.u_size(); ++i) {
+    for (int j = 0; j < patch.v_size(); ++j) {
+      const int from_i = flip_u ? patch.u_size() - 1 - i : i;
+      const int from_j = flip_v ? patch.v_size() - 1 - j : j;
+      const auto from = static_cast<size_t>(from_i * patch.v_size() + from_j);
+      const auto to = static_cast<size_t>(swap ? j * patch.u_size() + i : i * patch.v_size() + j);
+      result.points[to] = patch.points[from];
+      if (!patch.weights.empty()) result.weights[to] = patch.weights[from];
+    }
+  }
+  const bool turned_over = (flip_u != flip_v) != swap;
+  result.reversed = patch.reversed != turned_over;
+  return result;
 }
 
 // Bezier patches built to meet with these factors; the last row is random.
