@@ -8,6 +8,7 @@
 #include "ecles/random_systems.h"
 #include "isochor/base/error.h"
 #include "isochor/ecles/proof.h"
+#include "isochor/ecles/sparse_order.h"
 
 namespace isochor {
 namespace {
@@ -211,6 +212,69 @@ TEST(Analysis, HeavyRowsAreNoException) {
   EXPECT_TRUE(verify_minimal(first.circuits[0], matrix, all.derived));
 }
 
+// Every row is planned once, and short ones before the long one that they would fill.
+TEST(Analysis, SparseOrderAvoidsFill) {
+  std::vector<RationalTerms> rows(1);
+  const int n = 40;
+  for (int j = 0; j < n; ++j) rows[0].emplace_back(j, Rational(1));
+  for (int j = 1; j < n; ++j) rows.push_back(terms({{0, 1}, {j, 2}}));
+  const ConstraintMatrix matrix(n, rows);
+  internal::Block block;
+  for (int j = 0; j < n; ++j) {
+    block.rows.push_back(j);
+    block.columns.push_back(j);
+  }
+  const internal::LocalSystem system(matrix, block.rows, block.columns);
+  const std::vector<internal::PlannedPivot> plan = internal::sparse_order(system, block);
+  std::set<int> seen;
+  for (const internal::PlannedPivot& planned : plan) seen.insert(planned.row);
+  EXPECT_EQ(plan.size(), block.rows.size());
+  EXPECT_EQ(seen.size(), block.rows.size());
+  EXPECT_NE(plan[0].row, 0);
+  EXPECT_EQ(plan[0].column, plan[0].row);
+}
+
+// A block that elimination in the order of precedence would fill: it is reordered, and still the
+// first basis comes out.
+TEST(Analysis, LargeSparseBlocksAreReordered) {
+  std::mt19937 random(21);
+  const int n = 300;
+  std::vector<RationalTerms> rows;
+  for (int i = 0; i < n; ++i) {
+    rows.emplace_back();
+    for (int k = 0; k < 4; ++k) {
+      rows.back().emplace_back(static_cast<int>(random() % n),
+                               Rational(static_cast<long>(1 + random() % 5)));
+    }
+  }
+  for (int i = 0; i < 30; ++i) {  // repeated, and the sum of two
+    RationalTerms sum = rows[random() % n];
+    if (i % 2 == 0) {
+      const RationalTerms& other = rows[random() % n];
+      sum.insert(sum.end(), other.begin(), other.end());
+    }
+    rows.push_back(sum);
+  }
+  Selection all;
+  for (int j = 0; j < n; ++j) all.derived.push_back(j);
+  AnalysisOptions options;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    options.precedence.push_back(static_cast<int>(random() % 1000));
+  }
+  const ConstraintMatrix matrix(n, rows);
+  const Analysis analysis = analyse(matrix, all, options);
+  EXPECT_TRUE(verify(analysis, matrix, all));
+  EXPECT_GE(analysis.dependent.size(), 30u);
+  const auto place = [&](int row) {
+    return std::make_pair(options.precedence[static_cast<size_t>(row)], row);
+  };
+  for (size_t k = 0; k < analysis.circuits.size(); ++k) {
+    for (const int row : analysis.circuits[k].rows) {
+      EXPECT_LE(place(row), place(analysis.dependent[k]));
+    }
+  }
+}
+
 // Rows that agree modulo the first prime, or the first few, are not the same.
 TEST(Analysis, PrimesDoNotMislead) {
   Integer product(1);
@@ -234,6 +298,30 @@ TEST(Analysis, PrimesDoNotMislead) {
     EXPECT_TRUE(verify(circuit, dependent, all));
     EXPECT_TRUE(verify_minimal(circuit.circuits[0], dependent, all.derived));
   }
+}
+
+// A long row takes the place of one whose multiplier is the prime itself.
+TEST(Analysis, PrimesDoNotMisleadExchanges) {
+  const int n = 40;
+  const Rational p(Integer(static_cast<long>(internal::elimination_prime(0))));
+  std::vector<RationalTerms> rows;
+  for (int j = 0; j + 1 < n; ++j) rows.push_back(terms({{j, 1}, {j + 1, -1}}));
+  RationalTerms sum{{0, p}, {1, Rational(1) - p}, {2, Rational(-1)}};  // p row 0 + row 1
+  for (int j = 3; j + 1 < n; j += 2) {
+    sum.emplace_back(j, Rational(1));
+    sum.emplace_back(j + 1, Rational(-1));
+  }
+  rows.push_back(sum);
+  const ConstraintMatrix matrix(n, rows);
+  Selection all;
+  for (int j = 0; j < n; ++j) all.derived.push_back(j);
+  AnalysisOptions options;
+  options.precedence.assign(rows.size(), 1);
+  options.precedence[0] = 2;
+  const Analysis analysis = analyse(matrix, all, options);
+  EXPECT_THAT(analysis.dependent, ElementsAre(0));
+  EXPECT_EQ(analysis.independence.prime, internal::elimination_prime(1));
+  EXPECT_TRUE(verify(analysis, matrix, all));
 }
 
 TEST(Analysis, PrimesArePrime) {

@@ -8,6 +8,7 @@
 #include "isochor/ecles/exchange.h"
 #include "isochor/ecles/index_map.h"
 #include "isochor/ecles/relation.h"
+#include "isochor/ecles/sparse_order.h"
 
 namespace isochor {
 namespace {
@@ -17,6 +18,11 @@ using internal::Elimination;
 using internal::LocalSystem;
 using internal::Relation;
 using internal::Structure;
+
+// Numbers that the elimination of a block may store before its rows are put into another order: so
+// many in any case, and so many times its coefficients.
+constexpr size_t kFreeFill = 2000;
+constexpr size_t kFill = 32;
 
 size_t index(int i) { return static_cast<size_t>(i); }
 
@@ -45,12 +51,14 @@ class Attempt {
       decision_.dependents.push_back({row, {{row, Integer(1)}}});
     }
     for (const Block& block : structure_.blocks) {
-      if (!take_rows(block.rows, elimination_.pivots(), block.columns)) return std::nullopt;
+      if (!take_block(block)) return std::nullopt;
     }
     if (!structure_.heavy.empty()) {
       std::vector<int> columns(index(system_.columns));
       std::iota(columns.begin(), columns.end(), 0);
-      if (!take_rows(structure_.heavy, 0, columns)) return std::nullopt;
+      for (const int row : structure_.heavy) {
+        if (!take_row({row, -1}, 0, columns)) return std::nullopt;
+      }
     }
     for (int k = 0; k < elimination_.pivots(); ++k) {
       decision_.rows.push_back(elimination_.row(k));
@@ -80,19 +88,73 @@ class Attempt {
     return true;
   }
 
-  bool take_rows(const std::vector<int>& rows, int first, const std::vector<int>& columns) {
-    for (const int row : rows) {
-      elimination_.load(row);
-      elimination_.reduce(first);
-      const int column = elimination_.nonzero_column(columns);
-      if (column >= 0) {
-        elimination_.add_pivot(row, column, first, columns);
-        continue;
-      }
-      std::optional<Relation> relation = relations_.find(row, first, columns);
-      if (!relation) return false;
-      decision_.dependents.push_back({row, std::move(*relation)});
+  // In the order of precedence, which gives the first basis at once, unless that fills in too much.
+  bool take_block(const Block& block) {
+    const int first = elimination_.pivots();
+    const size_t stored = elimination_.stored(), dependents = decision_.dependents.size();
+    size_t limit = stored + kFreeFill;
+    for (const int row : block.rows) limit += kFill * system_.row(row).size();
+    for (const int row : block.rows) {
+      if (!take_row({row, -1}, first, block.columns)) return false;
+      if (elimination_.stored() <= limit) continue;
+      elimination_.keep(first);
+      decision_.dependents.resize(dependents);
+      return take_planned(block);
     }
+    return true;
+  }
+
+  // Once to learn which rows are the first basis, once more for those rows and then the others.
+  bool take_planned(const Block& block) {
+    const int first = elimination_.pivots();
+    const std::vector<internal::PlannedPivot> plan = internal::sparse_order(system_, block);
+    std::vector<internal::ModularRelation> relations;
+    for (const internal::PlannedPivot& planned : plan) {
+      if (!take_pivot(planned, first, block.columns)) {
+        relations.push_back(modular_relation(planned.row, first));
+      }
+    }
+    if (relations.empty()) return true;
+    const std::vector<int> dependent =
+        internal::dependent_on_first(field_, block.rows, std::move(relations));
+    elimination_.keep(first);
+    for (const internal::PlannedPivot& planned : plan) {
+      if (std::binary_search(dependent.begin(), dependent.end(), planned.row)) continue;
+      if (!take_row(planned, first, block.columns)) return false;
+    }
+    for (const int row : dependent) {
+      if (!take_row({row, -1}, first, block.columns)) return false;
+    }
+    return true;
+  }
+
+  internal::ModularRelation modular_relation(int row, int first) {
+    internal::ModularRelation relation{{row, field_.negative(1)}};
+    const std::vector<internal::Residue>& y = elimination_.combination(first);
+    for (size_t k = 0; k < y.size(); ++k) {
+      if (y[k] != 0) relation.emplace_back(elimination_.row(first + static_cast<int>(k)), y[k]);
+    }
+    return relation;
+  }
+
+  // Whether the row, reduced, has a pivot; else the elimination is left as it was.
+  bool take_pivot(const internal::PlannedPivot& planned, int first,
+                  const std::vector<int>& columns) {
+    elimination_.load(planned.row);
+    elimination_.reduce(first);
+    int column = planned.column;
+    if (column < 0 || elimination_.vector()[index(column)] == 0) {
+      column = elimination_.nonzero_column(columns);
+    }
+    if (column >= 0) elimination_.add_pivot(planned.row, column, first, columns);
+    return column >= 0;
+  }
+
+  bool take_row(const internal::PlannedPivot& planned, int first, const std::vector<int>& columns) {
+    if (take_pivot(planned, first, columns)) return true;
+    std::optional<Relation> relation = relations_.find(planned.row, first, columns);
+    if (!relation) return false;
+    decision_.dependents.push_back({planned.row, std::move(*relation)});
     return true;
   }
 
@@ -104,11 +166,15 @@ class Attempt {
   Decision decision_;
 };
 
-Decision decide(const LocalSystem& system, const Structure& structure) {
+Decision decide(const LocalSystem& system, const Structure& structure,
+                const std::vector<int>& order) {
   for (int trial = 0;; ++trial) {
-    std::optional<Decision> decision =
-        Attempt(system, structure, internal::elimination_prime(trial)).run();
-    if (decision) return std::move(*decision);
+    const unsigned long prime = internal::elimination_prime(trial);
+    std::optional<Decision> decision = Attempt(system, structure, prime).run();
+    if (decision &&
+        internal::exchange_to_first(order, prime, decision->dependents, decision->rows)) {
+      return std::move(*decision);
+    }
   }
 }
 
@@ -187,9 +253,7 @@ Analysis analyse(const ConstraintMatrix& matrix, const Selection& selection,
   const LocalSystem system(matrix, analysis.relevance.rows, selection.derived);
   const std::vector<int> order = rows_in_order(analysis.relevance.rows, options.precedence);
   const Structure structure = internal::structure(system, order);
-  Decision decision = decide(system, structure);
-  internal::exchange_to_first(order, decision.dependents, decision.rows);
-  name_rows(std::move(decision), selection, analysis);
+  name_rows(decide(system, structure, order), selection, analysis);
 
   const internal::IndexMap anchors(selection.anchors);
   for (size_t k = 0; k < analysis.circuits.size(); ++k) {

@@ -7,6 +7,13 @@ size_t index(int i) { return static_cast<size_t>(i); }
 
 }  // namespace
 
+void Elimination::keep(int pivots) {
+  if (pivots >= this->pivots()) return;
+  upper_.resize(pivots_[index(pivots)].upper_begin);
+  factors_.resize(pivots_[index(pivots)].factors_begin);
+  pivots_.resize(index(pivots));
+}
+
 void Elimination::load(int row) {
   for (const LocalTerm& term : system_.row(row)) {
     vector_[index(term.column)] = term.is_word ? field_.of(term.word) : field_.of(*term.value);

@@ -25,6 +25,11 @@ class Elimination {
   int row(int k) const { return pivots_[static_cast<size_t>(k)].row; }
   int column(int k) const { return pivots_[static_cast<size_t>(k)].column; }
 
+  // Numbers stored for the pivots.
+  size_t stored() const { return upper_.size() + factors_.size(); }
+  // Forgets all pivots but the first so many.
+  void keep(int pivots);
+
   // The vector at work, all zeros between uses.
   std::vector<Residue>& vector() { return vector_; }
   void load(int row);
