@@ -230,14 +230,16 @@ TEST(LeastChange, WithinALimit) {
   EXPECT_EQ(easy.solve_within(1, right, values), easy.solve(right, values));
 }
 
-TEST(LeastChange, BitsAreBoundedFromAbove) {
+TEST(LeastChange, DigitsAreBoundedFromAbove) {
   const ConstraintMatrix matrix(4, {{{0, 3}, {1, 4}}, {{1, 1}, {2, 5}}});
   const LeastChange least(matrix, {0, 1, 2, 3}, {0, 1});
-  EXPECT_EQ(least.most_bits(), 3 * 10);  // 25 and 26 need five digits each; three parameters
+  EXPECT_EQ(least.most_digits().longest, 10);
+  EXPECT_EQ(least.most_digits().together,
+            3 * 10);  // 25 and 26 need five digits each; three parameters
   unsigned long bits = 0;
   for (const Rational& value : least.solve({1, 1}, {0, 0, 0, 0}))
     bits += value.denominator().bits();
-  EXPECT_LE(static_cast<double>(bits), least.most_bits());
+  EXPECT_LE(static_cast<double>(bits), least.most_digits().together);
 }
 
 }  // namespace

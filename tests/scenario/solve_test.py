@@ -259,7 +259,7 @@ class Solve(unittest.TestCase):
         for k in range(0, 57_000, 2):  # each flow also leaks into the one after the next
             del loops["constraints"][k // 2]
             loops["constraints"][k // 2]["terms"][f"flow 0/{k // 2 + 3}"] = 2
-        self.measured("one chain with leaks", json.dumps(loops), 1, "refused", "the limit is 128 MB")
+        self.measured("one chain with leaks", json.dumps(loops), 1, "refused", "the limit is 65536")
         refused = json.loads((WORK / "out.json").read_text())
         self.assertEqual((refused["outcome"], refused["values"]), ("refused", {}))
         self.assertTrue(refused["proofs_verified"])

@@ -344,8 +344,8 @@ std::optional<std::vector<Rational>> LeastChange::solve_within(
   return result;
 }
 
-double LeastChange::most_bits() const {
-  double bits = 0.0;
+LeastChange::Digits LeastChange::most_digits() const {
+  Digits digits;
   for (const Block& block : state_->blocks) {
     double determinant = 0.0;  // a positive definite one is at most the product of its diagonal
     for (const Row& row : block.rows) {
@@ -355,9 +355,10 @@ double LeastChange::most_bits() const {
                          block.inverse_weights[static_cast<size_t>(term.index)]);
       determinant += static_cast<double>(norm.bits());
     }
-    bits += determinant * static_cast<double>(block.columns.size());
+    digits.longest = std::max(digits.longest, determinant);
+    digits.together += determinant * static_cast<double>(block.columns.size());
   }
-  return bits;
+  return digits;
 }
 
 LeastChange::Approximation LeastChange::approximate(const std::vector<double>& right_sides,

@@ -47,9 +47,14 @@ class LeastChange {
   std::optional<std::vector<Rational>> solve_within(int most_eliminated,
                                                     const std::vector<Rational>& right_sides,
                                                     const std::vector<Rational>& values) const;
-  // Binary digits of all exact values together, bounded from above: for each block, its derived
-  // parameters times the bound of Hadamard for the determinant of A U A^T.
-  double most_bits() const;
+  // Bounds from above of the binary digits of exact denominators, of the longest and of all
+  // together: Hadamard's for the determinant of A U A^T of each block, shared by its columns. The
+  // time of solve() grows with the square of the longest.
+  struct Digits {
+    double longest = 0.0;
+    double together = 0.0;
+  };
+  Digits most_digits() const;
 
   struct Approximation {
     std::vector<double> derived;

@@ -10,6 +10,7 @@ namespace isochor::internal {
 namespace {
 
 constexpr int kMostMegabytes = 128;
+constexpr int kMostBits = 65'536;
 constexpr int kMostEliminated = 1500;
 constexpr size_t kMostDense = 100'000;
 constexpr int kMostPlainRows = 16;
@@ -69,7 +70,14 @@ DerivedValues nearest_values(const Problem& problem, const ProblemSystem& system
                              const Analysis& analysis) {
   const LeastChange least(system.matrix, system.selection.derived, analysis.independent,
                           weights_of(problem));
-  const double megabytes = least.most_bits() * problem.dimension / 8e6;
+  const LeastChange::Digits digits = least.most_digits();
+  if (digits.longest > kMostBits) {
+    return {{},
+            "constraints that hang together may give values of " +
+                std::to_string(static_cast<long>(std::min(digits.longest, 1e15))) +
+                " binary digits; the limit is " + std::to_string(kMostBits)};
+  }
+  const double megabytes = digits.together * problem.dimension / 8e6;
   if (megabytes > kMostMegabytes) {
     return {{},
             "the exact values of " + std::to_string(problem.derived.size()) +

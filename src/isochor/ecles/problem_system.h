@@ -28,8 +28,9 @@ struct DerivedValues {
 };
 
 // The nearest values, by the method the problem asks for. The problem must be weakly solvable.
-// Limits: exact values of 128 MB together; for the methods of the thesis, which are dense, 100 000
-// coefficients, and 16 rows for `plain`, whose numbers double in length with each.
+// Limits: exact values of 65 536 binary digits each and 128 MB together; for the methods of the
+// thesis, which are dense, 100 000 coefficients, and 16 rows for `plain`, whose numbers double in
+// length with each.
 DerivedValues derived_values(const Problem& problem, const ProblemSystem& system,
                              const Analysis& analysis);
 
