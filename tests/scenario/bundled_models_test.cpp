@@ -88,7 +88,7 @@ TEST(BundledModels, AreWhatTheirGeneratorWrites) {
     EXPECT_TRUE(read_text(entry.path().string()) == read_text(kFolder + name)) << name;
     ++files;
   }
-  EXPECT_EQ(files, 5);
+  EXPECT_EQ(files, 8);
   fs::remove_all(folder);
 }
 

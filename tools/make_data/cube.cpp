@@ -1,6 +1,6 @@
 #include <map>
-#include <sstream>
 
+#include "make_data/model_text.h"
 #include "make_data/shapes.h"
 #include "make_data/step_text.h"
 
@@ -38,10 +38,6 @@ Surface face_surface(const CubeFace& face) {
     }
   }
   return {knots, knots, poles};
-}
-
-bool before(const Vec3& a, const Vec3& b) {
-  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
 // Straight pcurve of a side, along the side's own parameter.
@@ -102,42 +98,9 @@ std::string cube_step() {
 }
 
 std::string cube_json() {
-  std::map<Vec3, int, bool (*)(const Vec3&, const Vec3&)> numbers(before);
-  std::vector<Vec3> points;
-  std::ostringstream patches;
-  const auto number = [](double value) {
-    std::string text = step_real(value);
-    if (text.back() == '.') text.pop_back();
-    return text;
-  };
-  for (const CubeFace& face : kFaces) {
-    const Surface surface = face_surface(face);
-    const auto& knots = surface.u_knots().knots();
-    std::string knot_text;
-    for (double knot : knots) knot_text += (knot_text.empty() ? "" : ",") + number(knot);
-    patches << (patches.tellp() > 0 ? ",\n" : "") << "  {\"name\": \"" << face.name
-            << "\", \"degree\": [3,3],\n   \"knots\": [[" << knot_text << "],\n             ["
-            << knot_text << "]],\n   \"poles\": [";
-    for (int i = 0; i < surface.u_size(); ++i) {
-      patches << (i > 0 ? ",\n             [" : "[");
-      for (int j = 0; j < surface.v_size(); ++j) {
-        const auto [place, fresh] =
-            numbers.emplace(surface.pole(i, j), static_cast<int>(points.size()));
-        if (fresh) points.push_back(surface.pole(i, j));
-        patches << (j > 0 ? "," : "") << place->second;
-      }
-      patches << "]";
-    }
-    patches << "],\n   \"weights\": null, \"reversed\": false}";
-  }
-  std::ostringstream text;
-  text << "{\"isochor_model\": 1, \"unit\": \"m\",\n \"points\": [\n";
-  for (size_t i = 0; i < points.size(); ++i) {
-    text << "  [" << number(points[i].x()) << "," << number(points[i].y()) << ","
-         << number(points[i].z()) << "]" << (i + 1 < points.size() ? ",\n" : "\n");
-  }
-  text << " ],\n \"patches\": [\n" << patches.str() << "\n ]}\n";
-  return text.str();
+  NamedSurfaces surfaces;
+  for (const CubeFace& face : kFaces) surfaces.emplace_back(face.name, face_surface(face));
+  return model_text(surfaces);
 }
 
 }  // namespace make_data

@@ -29,6 +29,9 @@ int main(int argc, char** argv) {
     write(folder + "hull.step", make_data::hull_step());
     write(folder + "cube.step", make_data::cube_step());
     write(folder + "cube.isochor.json", make_data::cube_json());
+    write(folder + "cylinder.isochor.json", make_data::cylinder_json());
+    write(folder + "torus.isochor.json", make_data::torus_json());
+    write(folder + "spindle.isochor.json", make_data::spindle_json());
   } catch (const std::exception& error) {
     std::cerr << "isochor_make_data: " << error.what() << "\n";
     return 3;

@@ -26,4 +26,11 @@ std::string hull_step();
 std::string cube_step();
 std::string cube_json();
 
+// Rational bodies of revolution around the z axis, of whole patches: a wall (cubic along the axis,
+// quadratic around it) between two disks; a torus, cubic both ways; a spindle with a blunt nose and
+// a blunt tail, quadratic both ways. Their knot lines are smooth by their poles only.
+std::string cylinder_json();
+std::string torus_json();
+std::string spindle_json();
+
 }  // namespace make_data
