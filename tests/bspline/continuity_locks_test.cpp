@@ -140,7 +140,7 @@ TEST(ContinuityLocks, PeriodicSeamsWithRoughKnotsKeepTheirTangents) {
   ASSERT_EQ(model.joins.size(), 1u);
   EXPECT_TRUE(is_wrap(model, model.joins[0], point_classes(model)));
   EXPECT_EQ(model.joins[0].smoothness, Smoothness::kCurvature);
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(reason_texts(model),
               ::testing::Contains(HasSubstr("closes on itself smoothly (G2) at its seam, where its "
                                             "knots would allow a crease")));
@@ -156,7 +156,7 @@ TEST(ContinuityLocks, PeriodicSeamsWithRoughKnotsKeepTheirTangents) {
   // Without the seam's own locks it would crease: they are not idle.
   PatchModel without = model;
   without.joins.clear();
-  derive_locks(without);
+  derive_locks(without, {});
   const Join creased = measure_join(model, shaken(without, 0.1), seam.a, seam.b, seam.opposed);
   EXPECT_LT(creased.smoothness, Smoothness::kTangent);
 }
@@ -164,14 +164,14 @@ TEST(ContinuityLocks, PeriodicSeamsWithRoughKnotsKeepTheirTangents) {
 TEST(ContinuityLocks, TipsAreFreeAndRoundPolesAreNot) {
   // A cone's tip is sharp: its poles may move (they are one point). The pole of a dome may not.
   PatchModel cone = testing::make_revolved(KnotVector::uniform(1, 1), {{1, 0}, {0, 2}});
-  derive_locks(cone);
+  derive_locks(cone, {});
   for (const std::string& text : reason_texts(cone)) {
     EXPECT_THAT(text, ::testing::Not(HasSubstr("is one point")));
   }
   const double w = std::sqrt(0.5);
   PatchModel dome =
       testing::make_revolved(KnotVector::uniform(2, 1), {{1, 0}, {1, 1}, {0, 1}}, {1, w, 1});
-  derive_locks(dome);
+  derive_locks(dome, {});
   EXPECT_THAT(reason_texts(dome),
               ::testing::Contains("side v1 of face:1 is one point with a tangent plane: the poles "
                                   "around it stay so that no tip appears"));
@@ -184,7 +184,7 @@ TEST(ContinuityLocks, SmoothnessOfLockedSidesDecidesTheRows) {
     PatchModel model = testing::make_cube_model(3, 3);
     while (model.patches.size() > 1) model.patches.pop_back();
     model.locked_sides = {{{0, Side::kVEnd}, "is cut there", smoothness}};
-    derive_locks(model);
+    derive_locks(model, {});
     std::set<int> expected;
     for (int row = 0; row < rows; ++row) {
       for (const auto& [i, j] : side_indices(model.patches[0], Side::kVEnd, row)) {
@@ -206,38 +206,38 @@ TEST(ContinuityLocks, RowsNeverGoBeyondThePatch) {
   PatchModel model = testing::make_separate_model(
       {Surface(line, line, {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}})});
   model.locked_sides = {{{0, Side::kUBegin}, "is held", Smoothness::kCurvature}};
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(locked_points(model), ElementsAre(0, 1, 2, 3));
 }
 
 TEST(ContinuityLocks, FixedPointsKeepTheirWordsAndCountOnce) {
   PatchModel model = testing::make_cube_model(2, 2);
   model.fixed_points = {{3, "bolted down"}, {5, "bolted down"}, {3, "bolted down"}, {3, "glued"}};
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(reason_texts(model), ElementsAre("bolted down", "glued"));
   EXPECT_EQ(model.locks.size(), 3u);
   EXPECT_FALSE(model.lock_reasons[0].continuity);
   // Law (3): what was there before does not matter.
   PatchModel again = model;
   again.lock(7, "left over", true);
-  derive_locks(again);
+  derive_locks(again, {});
   EXPECT_EQ(again.locks.size(), model.locks.size());
   EXPECT_EQ(reason_texts(again), reason_texts(model));
   model.fixed_points.clear();
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(model.locks, IsEmpty());
 }
 
 TEST(ContinuityLocks, SeamsSayThatThePatchMeetsItself) {
   PatchModel model = testing::make_sphere(1.0);
   model.joins = find_joins(model);
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(reason_texts(model), ::testing::Contains(HasSubstr(
                                        "meets itself smoothly (G2) at its seam: the poles next "
                                        "to that edge stay so that no crease appears")));
   model.joins[0].matching = false;
   model.joins[0].mismatch = "9 poles against 8";
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(reason_texts(model),
               ::testing::Contains(HasSubstr("meets itself at a seam whose poles do not correspond "
                                             "(9 poles against 8)")));

@@ -41,7 +41,7 @@ TEST(Continuity, SmoothJoinsStaySmooth) {
     PatchModel model = cut_in_two(testing::random_surface(random, u, v, rational), u.interior()[4]);
     ASSERT_EQ(model.joins.size(), 1u);
     ASSERT_EQ(model.joins[0].smoothness, Smoothness::kCurvature);
-    derive_locks(model);
+    derive_locks(model, {});
     const PatchModel& locked = model;
     EXPECT_EQ(locked_points(locked, true).size(), 5u * static_cast<size_t>(v.size()));
     EXPECT_THAT(locked_points(locked, false), IsEmpty());
@@ -63,20 +63,20 @@ TEST(Continuity, SmoothJoinsStaySmooth) {
 TEST(Continuity, ACubeIsFree) {
   PatchModel model = testing::make_cube_model(3, 4);
   model.joins = find_joins(model);
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(model.locks, IsEmpty());
   EXPECT_THAT(model.lock_reasons, IsEmpty());
   // Flat quadratic faces are curvature continuous, but their degree cannot keep that: not frozen.
   PatchModel quadratic = testing::make_cube_model(2, 4);
   quadratic.joins = find_joins(quadratic);
-  derive_locks(quadratic);
+  derive_locks(quadratic, {});
   EXPECT_THAT(quadratic.locks, IsEmpty());
 }
 
 TEST(Continuity, PeriodicTorusIsFree) {
   PatchModel model = testing::make_periodic_torus(3, 3, 8, 9);
   model.joins = find_joins(model);
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_THAT(model.locks, IsEmpty());
   const auto at = shaken(model, 0.02);
   for (const Join& join : model.joins) {
@@ -107,7 +107,7 @@ TEST(Continuity, KnotLinesOfAConvertedSphereStaySmooth) {
   model.patches.push_back(patch);
   model.joins = find_joins(model);
   ASSERT_EQ(model.joins.size(), 1u);
-  derive_locks(model);
+  derive_locks(model, {});
 
   const auto at = shaken(model, 0.05);
   EXPECT_GT(largest_move(model, at), 0.01) << "some freedom is left between the knot lines";
@@ -206,7 +206,7 @@ TEST(Continuity, LockedSidesAndMismatchesHaveTheirReasons) {
   model.locked_sides = {{{0, Side::kVBegin},
                          "shares an edge with face:5 (plane), which is not edited",
                          Smoothness::kTangent}};
-  derive_locks(model);
+  derive_locks(model, {});
   ASSERT_EQ(model.lock_reasons.size(), 4u);
   EXPECT_EQ(model.lock_reasons[0].text,
             "face:1 (\"hull\") shares an edge with face:5 (plane), which is not edited");
@@ -223,7 +223,7 @@ TEST(Continuity, LockedSidesAndMismatchesHaveTheirReasons) {
 
   const auto locks = model.locks.size();
   const auto reasons = model.lock_reasons.size();
-  derive_locks(model);
+  derive_locks(model, {});
   EXPECT_EQ(model.locks.size(), locks);
   EXPECT_EQ(model.lock_reasons.size(), reasons);
 }
@@ -233,7 +233,7 @@ TEST(Continuity, TrimmedPolesStay) {
   model.joins = find_joins(model);
   model.patches[0].trim.loops = {{{0, 0}, {0.4, 0}, {0.4, 1}, {0, 1}}};
   model.patches[0].trim.boundary = {{0.4, 0.4, 0.0, 1.0}};
-  derive_locks(model);
+  derive_locks(model, {});
   std::set<std::string> texts;
   for (const LockReason& reason : model.lock_reasons) {
     EXPECT_FALSE(reason.continuity);
@@ -262,7 +262,7 @@ TEST(Continuity, UntiedPoleSidesAreHeld) {
     id = static_cast<int>(model.points.size()) - 1;
   }
   model.joins.clear();
-  derive_locks(model);
+  derive_locks(model, {});
   std::string all;
   for (const LockReason& reason : model.lock_reasons) all += reason.text + "\n";
   EXPECT_THAT(all, HasSubstr("is one point, but its poles are not tied to each other"));

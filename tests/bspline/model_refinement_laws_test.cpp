@@ -204,7 +204,7 @@ TEST(ModelRefinementLaws, DroppedPointsTakeTheirLocksWithThem) {
 TEST(ModelRefinementLaws, LocksAreDerivedAfresh) {
   PatchModel model = testing::make_sphere(1.0);
   model.joins = find_joins(model);
-  derive_locks(model);
+  derive_locks(model, {});
   const auto free_share = [](const PatchModel& of) {
     std::set<int> locked;
     for (const Lock& lock : of.locks) locked.insert(lock.point);
@@ -219,7 +219,7 @@ TEST(ModelRefinementLaws, LocksAreDerivedAfresh) {
       refine(model, 0, refined_to_spans(patch.u_knots, 24), refined_to_spans(patch.v_knots, 12));
   EXPECT_THAT(fine.locks, IsEmpty());
   EXPECT_THAT(fine.lock_reasons, IsEmpty());
-  derive_locks(fine);
+  derive_locks(fine, {});
   EXPECT_GT(free_share(fine), 0.3);
 }
 

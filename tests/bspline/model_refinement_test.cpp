@@ -93,7 +93,7 @@ TEST(ModelRefinement, ClosedModelsStayClosedWhicheverPatchIsRefined) {
       PatchModel model = testing::random_closed_model(5, options);
       if (ties) model = with_ties(model);
       model = with_joins(model);
-      derive_locks(model);
+      derive_locks(model, {});
       for (int q : {0, 2, 5}) {
         const Patch& patch = model.patches[static_cast<size_t>(q)];
         const PatchModel fine =
@@ -210,7 +210,7 @@ TEST(ModelRefinement, UnusedPointsCanBeDropped) {
   PatchModel model = with_joins(with_ties(testing::make_cube_model(3, 4)));
   const Patch& top = model.patches[0];
   PatchModel fine = refine(model, 0, refined_to_spans(top.u_knots, 8), top.v_knots);
-  derive_locks(fine);
+  derive_locks(fine, {});
   const PatchModel compact = without_unused_points(fine);
   EXPECT_LT(compact.points.size(), fine.points.size());
   size_t corners = 0;

@@ -93,7 +93,7 @@ TEST(SmoothRelations, NoConstantFactorNoRelation) {
   ASSERT_EQ(model.joins[0].smoothness, Smoothness::kCurvature) << "both are planar";
   EXPECT_THAT(smooth_relations(model), IsEmpty());
   const auto without = [&] {
-    derive_locks(model);
+    derive_locks(model, {});
     return model.locks.size();
   }();
   derive_locks(model, smooth_relations(model));
@@ -108,7 +108,7 @@ TEST(SmoothRelations, LocksGiveWayToRelations) {
   PatchModel model = cut_in_two(testing::random_surface(random, u, v, false), u.interior()[2]);
   const auto relations = smooth_relations(model);
   ASSERT_EQ(relations.size(), 1u);
-  derive_locks(model);
+  derive_locks(model, {});
   const std::set<int> before = locked_points(model);
   const auto locking = points_locking(model, relations[0]);
   EXPECT_EQ(std::set<int>(locking.begin(), locking.end()), before);
@@ -136,7 +136,7 @@ TEST(SmoothRelations, KnotLinesAndTheSeamOfACircle) {
   EXPECT_EQ(lines, 6);
   derive_locks(torus, relations);
   EXPECT_THAT(torus.locks, IsEmpty());
-  derive_locks(torus);
+  derive_locks(torus, {});
   std::set<int> union_of_relations;
   for (const SmoothRelation& relation : relations) {
     const auto points = points_locking(torus, relation);

@@ -181,7 +181,7 @@ TEST(SmoothnessLaws, LockedKnotLinesStayAsSmoothAsTheyWere) {
     if (degree == 2) more.resize(1);
     const Surface surface = refine(smooth, with_knots(u, more), with_knots(v, {v.interior()[3]}));
     PatchModel model = testing::make_separate_model({surface});
-    derive_locks(model);
+    derive_locks(model, {});
     const std::set<int> locked = testing::locked_points(model);
     const auto at = testing::shaken(model, 0.2);
     EXPECT_LT(locked.size(), at.size());

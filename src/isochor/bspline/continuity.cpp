@@ -32,13 +32,15 @@ class LockCollector {
     model_->lock_reasons.clear();
   }
 
-  int reason(const std::string& text, bool continuity) {
+  int reason(const std::string& text, bool continuity, int join = -1) {
     auto& reasons = model_->lock_reasons;
     for (size_t i = 0; i < reasons.size(); ++i) {
-      if (reasons[i].text == text && reasons[i].continuity == continuity)
+      const LockReason& known = reasons[i];
+      if (known.text == text && known.continuity == continuity && known.join == join) {
         return static_cast<int>(i);
+      }
     }
-    reasons.push_back({text, continuity});
+    reasons.push_back({text, continuity, join});
     return static_cast<int>(reasons.size()) - 1;
   }
 
@@ -47,11 +49,12 @@ class LockCollector {
   }
 
   // Rows `from` .. `to` - 1 of a side, counted inwards.
-  void lock_rows(const SideRef& ref, int from, int to, const std::string& text, bool continuity) {
+  void lock_rows(const SideRef& ref, int from, int to, const std::string& text, bool continuity,
+                 int join = -1) {
     const Patch& patch = patch_of(*model_, ref);
     to = std::min(to, knots_of(patch, across_direction(ref.side)).size());
     if (from >= to) return;
-    const int id = reason(text, continuity);
+    const int id = reason(text, continuity, join);
     for (int row = from; row < to; ++row) {
       for (const auto& [i, j] : side_indices(patch, ref.side, row)) lock(patch.point(i, j), id);
     }
@@ -59,10 +62,10 @@ class LockCollector {
 
   // All poles of the functions `indices` of one direction.
   void lock_functions(int q, Direction direction, const std::vector<int>& indices,
-                      const std::string& text) {
+                      const std::string& text, int join = -1) {
     if (indices.empty()) return;
     const Patch& patch = model_->patches[static_cast<size_t>(q)];
-    const int id = reason(text, true);
+    const int id = reason(text, true, join);
     for (int k : indices) {
       if (direction == Direction::kU) {
         for (int j = 0; j < patch.v_size(); ++j) lock(patch.point(k, j), id);
@@ -135,7 +138,8 @@ void lock_side(const PatchModel& model, const LockedSide& locked, LockCollector*
                    true);
 }
 
-void lock_wrap(const PatchModel& model, const Join& join, LockCollector* locks) {
+void lock_wrap(const PatchModel& model, int k, LockCollector* locks) {
+  const Join& join = model.joins[static_cast<size_t>(k)];
   const Patch& patch = patch_of(model, join.a);
   const Direction direction = across_direction(join.a.side);
   const KnotVector& knots = knots_of(patch, direction);
@@ -144,12 +148,14 @@ void lock_wrap(const PatchModel& model, const Join& join, LockCollector* locks) 
                            " at its seam, where its knots would allow a crease";
   for (double end : {knots.begin(), knots.end()}) {
     if (order > knots.degree() - knots.multiplicity(knots.begin())) {
-      locks->lock_functions(join.a.patch, direction, functions_rough_at(knots, end, order), text);
+      locks->lock_functions(join.a.patch, direction, functions_rough_at(knots, end, order), text,
+                            k);
     }
   }
 }
 
-void lock_join(const PatchModel& model, const Join& join, bool covered, LockCollector* locks) {
+void lock_join(const PatchModel& model, int k, bool covered, LockCollector* locks) {
+  const Join& join = model.joins[static_cast<size_t>(k)];
   const std::string a = label_of(patch_of(model, join.a));
   const std::string b = label_of(patch_of(model, join.b));
   const bool seam = join.a.patch == join.b.patch;
@@ -167,7 +173,7 @@ void lock_join(const PatchModel& model, const Join& join, bool covered, LockColl
                        (seam ? a + " meets itself " : a + " and " + b + " meet ") +
                            smoothly(join.smoothness) + (seam ? " at its seam" : "") +
                            ": the poles next to that edge stay so that no crease appears",
-                       true);
+                       true, k);
     }
   }
 }
@@ -247,11 +253,12 @@ std::vector<int> functions_rough_at(const KnotVector& knots, double knot, int or
   return rough;
 }
 
-void derive_locks(PatchModel& model) { derive_locks(model, {}); }
+void derive_locks(PatchModel& model) { derive_locks(model, smooth_relations(model)); }
 
-void derive_locks(PatchModel& model, const std::vector<SmoothRelation>& relations) {
+void derive_locks(PatchModel& model, std::vector<SmoothRelation> relations) {
   LockCollector locks(&model);
-  const Covered covered(relations);
+  model.relations = std::move(relations);
+  const Covered covered(model.relations);
   const double size = diagonal(model);
   const PointClasses classes = point_classes(model);
   for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
@@ -267,9 +274,9 @@ void derive_locks(PatchModel& model, const std::vector<SmoothRelation>& relation
   for (int k = 0; k < static_cast<int>(model.joins.size()); ++k) {
     const Join& join = model.joins[static_cast<size_t>(k)];
     if (!is_wrap(model, join, classes)) {
-      lock_join(model, join, covered.join(k), &locks);
+      lock_join(model, k, covered.join(k), &locks);
     } else if (!covered.join(k)) {
-      lock_wrap(model, join, &locks);
+      lock_wrap(model, k, &locks);
     }
   }
 }

@@ -20,22 +20,20 @@
 
 namespace isochor {
 
-struct SmoothRelation;
-
-// Replaces model.locks and model.lock_reasons. Uses model.joins as they are (the reader fills them,
-// or find_joins). What is locked:
+// Replaces model.relations by those that fit, and model.locks and model.lock_reasons. Uses
+// model.joins as they are (the reader fills them, or find_joins). What is locked:
 //  - fixed points: as the reader said;
 //  - trim: functions whose support is not wholly inside (trims.h);
 //  - locked sides: the boundary row; further rows by their smoothness (continuity);
+// and, where no relation keeps the smoothness:
 //  - joins that do not match: the boundary rows of both sides; smooth joins, matching or not: rows
 //    0..1 for tangents and almost tangents, rows 0..2 for curvature (continuity);
 //  - knot lines smoother than their basis, wraps included: functions_rough_at (continuity);
 //  - collapsed sides with a tangent plane, or nearly: rows 0..1 (continuity). A pole's curvature is
 //    not measured and not kept. Collapsed sides whose points are not tied: row 0.
 void derive_locks(PatchModel& model);
-// The same without the locks for the smoothness that `relations` keep: displacements must then
-// fulfil their rows. Where a scale cannot state a relation, lock its points_locking besides.
-void derive_locks(PatchModel& model, const std::vector<SmoothRelation>& relations);
+// The same with chosen relations; none: all smoothness is kept by locks.
+void derive_locks(PatchModel& model, std::vector<SmoothRelation> relations);
 
 // The pole rows, counted from the side, that influence derivatives of order 0..order across it:
 // 0 .. order for clamped knots, more for unclamped ones.

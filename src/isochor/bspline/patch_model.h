@@ -15,6 +15,7 @@
 
 #include "isochor/base/vec3.h"
 #include "isochor/bspline/surface.h"
+#include "isochor/exact/rational.h"
 
 namespace isochor {
 
@@ -79,6 +80,37 @@ struct Join {
   Smoothness smoothness = Smoothness::kSharp;
 };
 
+// Smoothness that linear equations on displacements keep (smooth_relations.h, where the symbols
+// are).
+//
+// One coefficient of an equation across a line: of pole row `row` (counted in the patch's across
+// direction) of one of the two strips.
+struct LineTerm {
+  int strip = 0;  // 0: the first, 1: the second
+  int row = 0;
+  Rational value;
+};
+using LineEquation = std::vector<LineTerm>;
+
+struct SmoothRelation {
+  enum class Kind { kJoin, kKnotLine, kWrap, kPole };
+  Kind kind = Kind::kJoin;
+  int join = -1;   // kJoin, kWrap: index into model.joins
+  int patch = -1;  // kKnotLine, kWrap: the patch; the line is `across` = knot
+  Direction across = Direction::kU;
+  double knot = 0.0;
+  std::vector<SideRef> sides;  // kJoin: its two sides; kPole: all collapsed sides at the pole
+  int order = 1;               // 1: tangents, 2: curvature too (seams: as protected_order)
+  Rational lambda = Rational(1), mu;
+  double residual = 0.0;  // of the worse of the relations, as a part of its terms
+  std::string text;       // "face:3 and face:4 meet smoothly (G1)"
+
+  // For each order that the basis does not keep by itself, ascending: one equation for all j when
+  // the weights separate into a product near the line (always without weights), else one for each j
+  // along the first strip. Empty for poles.
+  std::vector<std::vector<LineEquation>> equations;
+};
+
 // A side whose neighbour is not part of the model (a face that is not edited).
 struct LockedSide {
   SideRef side;
@@ -94,8 +126,9 @@ struct Lock {
 
 struct LockReason {
   std::string text;
-  bool continuity =
-      false;  // true: only there to keep tangents or curvature ("continuity": "C0" lifts it)
+  // True: only there to keep tangents or curvature ("continuity": "C0" lifts it).
+  bool continuity = false;
+  int join = -1;  // the join that it keeps so; -1: a knot line, a pole, a neighbour
 };
 
 struct PatchModel {
@@ -109,6 +142,8 @@ struct PatchModel {
   std::vector<std::pair<int, std::string>> fixed_points;
   std::vector<LockReason> lock_reasons;
   std::vector<Lock> locks;
+  // Smoothness that displacements keep by equations instead; derive_locks fills them.
+  std::vector<SmoothRelation> relations;
 
   // The surface of patch q, with the poles of `points` (default: the model's own).
   Surface surface(int q) const { return surface(q, points); }

@@ -36,34 +36,6 @@
 
 namespace isochor {
 
-// One coefficient of an equation across a line: of pole row `row` (counted in the patch's across
-// direction) of one of the two strips.
-struct LineTerm {
-  int strip = 0;  // 0: the first, 1: the second
-  int row = 0;
-  Rational value;
-};
-using LineEquation = std::vector<LineTerm>;
-
-struct SmoothRelation {
-  enum class Kind { kJoin, kKnotLine, kWrap, kPole };
-  Kind kind = Kind::kJoin;
-  int join = -1;   // kJoin, kWrap: index into model.joins
-  int patch = -1;  // kKnotLine, kWrap: the patch; the line is `across` = knot
-  Direction across = Direction::kU;
-  double knot = 0.0;
-  std::vector<SideRef> sides;  // kJoin: its two sides; kPole: all collapsed sides at the pole
-  int order = 1;               // 1: tangents, 2: curvature too; as protected_order
-  Rational lambda = Rational(1), mu;
-  double residual = 0.0;  // of the worse of the relations, as a part of its terms
-  std::string text;       // "face:3 and face:4 meet smoothly (G1)"
-
-  // For each order that the basis does not keep by itself, ascending: one equation for all j when
-  // the weights separate into a product near the line (always without weights), else one for each j
-  // along the first strip. Empty for poles.
-  std::vector<std::vector<LineEquation>> equations;
-};
-
 // The relations that fit: for each smooth join that matches, each knot line and wrap that is
 // smoother than its basis, each pole with a tangent plane. Uses model.joins as they are.
 std::vector<SmoothRelation> smooth_relations(const PatchModel& model);

@@ -18,7 +18,6 @@
 
 namespace isochor {
 
-enum class Direction { kU, kV };
 inline Direction running_direction(Side side) {
   return is_u_side(side) ? Direction::kV : Direction::kU;
 }

@@ -23,6 +23,9 @@ inline bool is_begin_side(Side side) { return side == Side::kUBegin || side == S
 // "u0", "u1", "v0", "v1".
 const char* name_of(Side side);
 
+// The two parameters.
+enum class Direction { kU, kV };
+
 // Position and partial derivatives at one parameter pair.
 struct SurfaceDerivatives {
   Vec3 s = Vec3::Zero();
