@@ -152,7 +152,7 @@ TEST(DegenerateCases, AMoveOfAHeldEdgeIsInfeasible) {
   edit.holds = {testing::hold_edge("top", "back")};
   const Certificate no = failing(paper_cube(), edit);
   EXPECT_EQ(no.outcome, Outcome::kInfeasible);
-  EXPECT_THAT(no.conflicting, ElementsAre("move[0]"));
+  EXPECT_THAT(no.conflicting, ElementsAre("move[0]", "hold[0].edge"));
 }
 
 TEST(DegenerateCases, RefusalsBeforeAnythingIsTried) {

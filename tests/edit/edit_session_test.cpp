@@ -280,23 +280,28 @@ TEST(EditSession, CancelledEditLeavesTheModel) {
   EXPECT_EQ(session.model().points, before);
 }
 
-TEST(EditSession, SmoothJoinsAreLockedUnlessC0IsAsked) {
+TEST(EditSession, ConvertedSurfacesStaySmoothUnlessC0IsAsked) {
   // A sphere is smooth across its seam and its knot lines only by the accident of its poles.
   Edit edit = figure4(Method::kIsotropic);
   edit.moves[0].place.patch = "face:1";
   edit.moves[0].place.normalised = true;
-  edit.moves[0].place.uv = {0.3, 0.5};
-  edit.moves[0].vector = Vec3(0.01, 0.0, 0.0);
+  edit.moves[0].place.uv = {0.25, 0.5};
+  edit.moves[0].vector = Vec3(0.0, 0.05, 0.0);
   edit.extent.kind = Extent::Kind::kAll;
   edit.continuity = Continuity::kMeasured;
   EditSession session(prepared(testing::make_sphere(1.0)));
-  const Certificate no = session.apply(edit);
-  EXPECT_EQ(no.outcome, Outcome::kInfeasible);
-  ASSERT_FALSE(no.locked.empty());
+  const Certificate smooth = session.apply(edit);
+  ASSERT_EQ(smooth.outcome, Outcome::kDone) << smooth.reason;
+  EXPECT_LE(std::abs(smooth.volume.relative_change), 1e-13);
+  EXPECT_GE(smooth.skin.change.knot_lines, 3);
+  EXPECT_EQ(smooth.skin.change.poles, 2);
+  EXPECT_LE(smooth.skin.change.angle_rad, 1e-12);
+  EXPECT_TRUE(session.undo());
   edit.continuity = Continuity::kC0;
-  const Certificate done = session.apply(edit);
-  EXPECT_EQ(done.outcome, Outcome::kDone) << done.reason;
-  EXPECT_LE(std::abs(done.volume.relative_change), 1e-14);
+  const Certificate creased = session.apply(edit);
+  EXPECT_EQ(creased.outcome, Outcome::kDone) << creased.reason;
+  EXPECT_GE(creased.skin.change.angle_rad, 1e-3);
+  EXPECT_LE(std::abs(creased.volume.relative_change), 1e-13);
 }
 
 // Errors and honest refusals.

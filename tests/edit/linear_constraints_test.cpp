@@ -84,10 +84,14 @@ TEST_F(LinearConstraints, ASumOfThreeConflictsNamesAllThree) {
   const LinearConstraint a = at("a", 0, 0.3, 0.4, Vec3(1, 0, 0));
   const LinearConstraint b = at("b", 0, 0.7, 0.6, Vec3(0, 1, 0));
   LinearConstraint c{"c", a.row, Vec3(0.25, 0.5, 0.1)};
-  for (Vec3& value : c.row.value) value *= 0.5;
   for (size_t k = 0; k < b.row.coefficient.size(); ++k) {
     c.row.coefficient.push_back(b.row.coefficient[k]);
-    c.row.value.push_back(0.5 * b.row.value[k]);
+    c.row.value.push_back(b.row.value[k]);
+    c.row.exact.push_back(b.row.exact[k]);
+  }
+  for (Vec3& value : c.row.value) value *= 0.5;
+  for (auto& entry : c.row.exact) {
+    for (Rational& value : entry) value /= Rational(2);
   }
   EXPECT_THAT(system({a, b, c}).conflicting(), UnorderedElementsAre("a", "b", "c"));
 }

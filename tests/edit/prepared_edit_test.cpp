@@ -180,7 +180,7 @@ TEST(PreparedEdit, EdgeHoldsKeepTheWholeCurve) {
     EXPECT_EQ(after.point(t, 0.0), before.point(t, 0.0)) << t;
   }
   EXPECT_TRUE(std::any_of(done.locked.begin(), done.locked.end(), [](const LockRecord& lock) {
-    return lock.reason == "hold[0] keeps the edge";
+    return lock.reason == "hold[0].edge keeps the edge";
   }));
 }
 

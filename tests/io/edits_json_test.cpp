@@ -76,6 +76,9 @@ TEST(EditsJson, FormatThenParseIsTheSame) {
         R"("extent": {"box": {"patch": "a", "u": [0, 0.1], "v": [0.25, 1]}})",
         R"("extent": "all", "scale": {"knots": {"a": [[0.1], [0.2, 0.3]]}})",
         R"("extent": {"points": [3, 1]}, "refine": {"length": 0.1}, "volume": {"change": -2e-3})",
+        R"("hold": [{"plane": {"point": [0, 0, 1], "normal": [1, 0, 0]}}], "continuity": "G1")",
+        R"("hold": [{"near": [0, 0, 1], "normal": true}])",
+        R"("continuity": {"edges": [{"edge": ["a", "b"], "keep": "measured"}]})",
         R"("move": [{"near": [0.1, 0.2, 0.3], "to": [1, 2, 3]}], "method": "taylor")"}) {
     const std::string once = format_edits(parse_edits(script_of(keys), "e.json"));
     EXPECT_EQ(once, format_edits(parse_edits(once, "e.json"))) << keys;
@@ -113,11 +116,32 @@ TEST(EditsJson, LaterFeaturesAreRefusedByName) {
   EXPECT_THAT(error_of(R"({"isochor_edits": 1, "edits": [{"metric": "energy"}]})"),
               HasSubstr("\"energy\" is not available in this version"));
   EXPECT_THAT(error_of(script_of(R"("scale": {"level": 1.5})")), HasSubstr("wavelet level"));
-  EXPECT_THAT(error_of(script_of(R"("hold": [{"plane": {}}])")), HasSubstr("hold in a plane"));
-  EXPECT_THAT(error_of(script_of(R"("hold": [{"patch": "a", "uv": [0,0], "normal": true}])")),
-              HasSubstr("holding a normal"));
-  EXPECT_THAT(error_of(script_of(R"("continuity": {"a": "C0"})")),
-              HasSubstr("continuity per edge"));
+}
+
+TEST(EditsJson, HoldsOfNormalsAndPlanesAndContinuityByEdge) {
+  const Edit edit = parse_edits(script_of(R"(
+    "hold": [{"patch": "a", "uv": [0, 0], "normal": true}, {"patch": "a", "uv": [0, 0], "normal": false},
+             {"plane": {"point": [0, 0, 1], "normal": [0, "1/2", 0]}}],
+    "continuity": {"default": "G1", "edges": [{"edge": ["a", "b"], "keep": "C0"}]})"),
+                                "e.json")
+                        .edits[0];
+  EXPECT_EQ(edit.holds[0].kind, Hold::Kind::kNormal);
+  EXPECT_EQ(edit.holds[1].kind, Hold::Kind::kPlace);
+  EXPECT_EQ(edit.holds[2].kind, Hold::Kind::kPlane);
+  EXPECT_EQ(edit.holds[2].plane_normal, Vec3(0, 0.5, 0));
+  EXPECT_EQ(edit.continuity, Continuity::kTangent);
+  ASSERT_EQ(edit.edge_continuity.size(), 1u);
+  EXPECT_EQ(edit.edge_continuity[0].edge[1], "b");
+  EXPECT_EQ(edit.edge_continuity[0].keep, Continuity::kC0);
+  EXPECT_THAT(error_of(script_of(R"("hold": [{"plane": {}}])")),
+              HasSubstr("edits[0].hold[0].plane"));
+  EXPECT_THAT(error_of(script_of(R"("hold": [{"plane": {"point": [0,0,0], "normal": [0,0,0]}}])")),
+              HasSubstr("the normal is zero"));
+  EXPECT_THAT(error_of(script_of(R"("hold": [{"patch": "a", "pole": [0,0], "normal": true}])")),
+              HasSubstr("a coefficient has no normal"));
+  EXPECT_THAT(error_of(script_of(R"("continuity": "G3")")), HasSubstr("found \"G3\""));
+  EXPECT_THAT(error_of(script_of(R"("continuity": {"edges": [{"edge": ["a"], "keep": "C0"}]})")),
+              HasSubstr("named by its two faces"));
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include "isochor/base/outcome.h"
 #include "isochor/base/vec3.h"
 #include "isochor/edit/edit_script.h"
+#include "isochor/edit/named_conflict.h"
+#include "isochor/edit/skin_change.h"
 
 namespace isochor {
 
@@ -39,6 +41,13 @@ struct JoinRecord {
   double angle_change_rad = 0.0;
 };
 
+// The equations that hold the skin together, and what became of it.
+struct SkinRecord {
+  int relations = 0;      // joins, knot lines and poles whose smoothness equations keep
+  double residual = 0.0;  // of those equations at the displacement, in doubles; a length
+  SkinChange change;      // measured on what was written
+};
+
 struct LockRecord {
   std::string patch;
   std::string reason;
@@ -51,11 +60,13 @@ struct Certificate {
   Outcome outcome = Outcome::kDone;
   std::string reason;
   std::vector<std::string> conflicting;  // constraints to blame
+  std::vector<NamedConflict> conflicts;  // when they contradict each other: the proofs
   std::vector<std::string> redundant;
   VolumeRecord volume;
   std::vector<MoveRecord> moves;
   std::vector<MoveRecord> holds;
   JoinRecord joins;
+  SkinRecord skin;
   int rows = 0, rank = 0, freedom_left = 0;
   int coefficients = 0;  // free in the extent
   int poles_moved = 0;

@@ -51,7 +51,7 @@ void DisplacementSpace::mirror(const PatchModel& model, int axis) {
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
     if (static_cast<int>(c) == image[c]) {
-      lock_coefficient(target, bit, "on the plane of symmetry");
+      lock_coefficient(target, bit, kOnSymmetry);
     } else if (leader[c] != static_cast<int>(c)) {
       weights_[static_cast<size_t>(target)] += old.weights_[c];
       if (old.locked_axes_[c] != 0) {

@@ -65,8 +65,11 @@ DisplacementSpace::DisplacementSpace(const PatchModel& model, const Options& opt
   make_rows(model);
   make_places(model);
   check_ties(model);
-  apply_locks(model, options.continuity);
+  choose_relations(model, options);
+  apply_locks(model, options);
+  const std::vector<ContinuityRow> rows = stated_relations(model);
   for (int axis : options.symmetry_axes) mirror(model, axis);
+  make_kept_rows(rows, !options.symmetry_axes.empty());
 }
 
 int DisplacementSpace::entry_index(int q, int i, int j) const {
@@ -322,47 +325,8 @@ void DisplacementSpace::lock_points(const std::vector<int>& points, const std::s
   }
 }
 
-void DisplacementSpace::apply_locks(const PatchModel& model, Continuity continuity) {
-  for (const Lock& lock : model.locks) {
-    const LockReason& reason = model.lock_reasons[static_cast<size_t>(lock.reason)];
-    if (reason.continuity && continuity == Continuity::kC0) continue;
-    lock_points({lock.point}, reason.text);
-  }
-}
-
-CoefficientRow DisplacementSpace::surface_row(const PatchModel& model, int q, Uv uv) const {
-  const Patch& patch = model.patches[static_cast<size_t>(q)];
-  const BasisValues bu = evaluate_basis(patch.u_knots, uv.u);
-  const BasisValues bv = evaluate_basis(patch.v_knots, uv.v);
-  double denominator = 0.0;
-  std::map<int, Vec3> row;
-  for (int i = 0; i <= bu.degree; ++i) {
-    for (int j = 0; j <= bv.degree; ++j) {
-      const size_t at = static_cast<size_t>(bu.first + i) * patch.v_size() + (bv.first + j);
-      const double w = patch.weights.empty() ? 1.0 : patch.weights[at];
-      const double b = bu.value(0, i) * bv.value(0, j) * w;
-      denominator += b;
-      if (b == 0.0) continue;
-      const auto c = static_cast<size_t>(class_of_point_[static_cast<size_t>(patch.points[at])]);
-      for (const RowTerm& term : rows_[c]) {
-        const Entry& entry = entries_[static_cast<size_t>(term.entry)];
-        Vec3& value = row.try_emplace(entry.coefficient, Vec3::Zero()).first->second;
-        for (int a = 0; a < 3; ++a) {
-          value[a] += (entry.flipped >> a & 1u ? -b : b) * term.value;
-        }
-      }
-    }
-  }
-  CoefficientRow result;
-  for (const auto& [c, value] : row) {
-    result.coefficient.push_back(c);
-    result.value.push_back(patch.weights.empty() ? value : Vec3(value / denominator));
-  }
-  return result;
-}
-
 CoefficientRow DisplacementSpace::grid_row(int q, int i, int j) const {
-  return {{coefficient(q, i, j)}, {signs(q, i, j)}};
+  return {{coefficient(q, i, j)}, {signs(q, i, j)}, {}};
 }
 
 std::vector<Vec3> DisplacementSpace::expand(const std::vector<Vec3>& delta) const {

@@ -11,11 +11,14 @@
 //  (3) gather is the transpose of expand: <g, expand(delta)> = <gather(g), delta>.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "isochor/bspline/patch_model.h"
+#include "isochor/bspline/smooth_relations.h"
 #include "isochor/edit/edit_script.h"
+#include "isochor/exact/rational.h"
 #include "isochor/multires/model_scale.h"
 
 namespace isochor {
@@ -24,16 +27,35 @@ namespace isochor {
 struct CoefficientRow {
   std::vector<int> coefficient;
   std::vector<Vec3> value;
+  // The same without rounding, for exact verdicts; empty: the doubles are exact.
+  std::vector<std::array<Rational, 3>> exact;
+};
+
+// Which form of a surface's displacement: itself, or its derivative along a parameter.
+enum class SurfaceForm { kPoint, kAlongU, kAlongV };
+
+// An equation that every displacement obeys: row(delta) = 0 on each axis.
+struct KeptRow {
+  CoefficientRow row;
+  int relation = 0;  // index into DisplacementSpace::relations
 };
 
 class DisplacementSpace {
  public:
+  // What to keep at the joins of two patches, instead of the default.
+  struct EdgeRule {
+    int a = 0, b = 0;
+    Continuity keep = Continuity::kMeasured;
+  };
   // What the space depends on besides the model.
   struct Options {
     Scale scale;
     Continuity continuity = Continuity::kMeasured;
     std::vector<int> symmetry_axes;  // mirror planes: 0 for x = 0, ...
+    std::vector<EdgeRule> edges = {};
   };
+  // The reason of a lock that symmetry brings.
+  static constexpr const char* kOnSymmetry = "on the plane of symmetry";
 
   // Throws InputError for knots that are not in the model, and for models that are not symmetric
   // (naming the first point without a mirror image). Cost O(#points * (d+1)^2).
@@ -66,10 +88,23 @@ class DisplacementSpace {
   // Locks every coefficient that moves one of these points.
   void lock_points(const std::vector<int>& points, const std::string& reason);
 
-  // The displacement of the surface of patch q at (u, v).
-  CoefficientRow surface_row(const PatchModel& model, int q, Uv uv) const;
+  // The displacement of the surface of patch q at (u, v), or its derivative there. Exact for
+  // polynomial patches; for patches with weights exact for the map in doubles that is applied.
+  CoefficientRow surface_row(const PatchModel& model, int q, Uv uv,
+                             SurfaceForm form = SurfaceForm::kPoint) const;
   // The displacement of grid coefficient (i, j) of patch q.
   CoefficientRow grid_row(int q, int i, int j) const;
+
+  // The displacement of one point of the model; empty for a point that no patch uses.
+  CoefficientRow point_row(int point) const;
+
+  // What holds the skin together besides ties and locks: equations on the coefficients, with the
+  // relations of the model that they come from.
+  const std::vector<KeptRow>& kept_rows() const { return kept_rows_; }
+  const std::vector<SmoothRelation>& relations() const { return relations_; }
+  const std::string& kept_name(const KeptRow& kept) const {
+    return relations_[static_cast<size_t>(kept.relation)].text;
+  }
 
   // Displacements of all points. delta: #coefficients. Cost O(nonzeros).
   std::vector<Vec3> expand(const std::vector<Vec3>& delta) const;
@@ -89,6 +124,7 @@ class DisplacementSpace {
   };
 
   class EntrySets;
+  class RowBuilder;
   int entry_index(int q, int i, int j) const;
   void tie_wrap(const SideRef& ref, EntrySets& sets);
   void make_grids(const PatchModel& model, const Scale& scale);
@@ -98,7 +134,12 @@ class DisplacementSpace {
   void make_places(const PatchModel& model);
   void mirror(const PatchModel& model, int axis);
   void check_mirror(const PatchModel& model, int axis, const std::vector<int>& image);
-  void apply_locks(const PatchModel& model, Continuity continuity);
+  void apply_locks(const PatchModel& model, const Options& options);
+  void choose_relations(const PatchModel& model, const Options& options);
+  std::vector<ContinuityRow> stated_relations(const PatchModel& model);
+  void make_kept_rows(const std::vector<ContinuityRow>& rows, bool mirrored);
+  CoefficientRow combination(const std::vector<GridTerm>& terms) const;
+  void drop_mirrored_rows();
   void lock_coefficient(int c, unsigned axes, const std::string& reason);
 
   struct RowTerm {
@@ -120,6 +161,8 @@ class DisplacementSpace {
   std::vector<unsigned> locked_axes_;
   std::vector<int> lock_reason_of_;
   std::vector<std::string> lock_reasons_;
+  std::vector<SmoothRelation> relations_;
+  std::vector<KeptRow> kept_rows_;
 };
 
 }  // namespace isochor

@@ -15,7 +15,15 @@ const char* name_of(Method method) {
 }
 
 const char* name_of(Continuity continuity) {
-  return continuity == Continuity::kC0 ? "C0" : "measured";
+  switch (continuity) {
+    case Continuity::kMeasured:
+      return "measured";
+    case Continuity::kTangent:
+      return "G1";
+    case Continuity::kC0:
+      return "C0";
+  }
+  return "?";
 }
 
 }  // namespace isochor

@@ -40,11 +40,19 @@ struct Move {
 };
 
 struct Hold {
-  enum class Kind { kPlace, kEdge, kSymmetry };
+  enum class Kind {
+    kPlace,     // the point stays
+    kNormal,    // the tangent plane's direction at a surface point stays, the point may move
+    kEdge,      // the curve that two patches share stays
+    kSymmetry,  // mirror images stay mirror images
+    kPlane,     // control points that lie in a plane stay in it
+  };
   Kind kind = Kind::kPlace;
-  Place place;
+  Place place;                      // kPlace, kNormal
   std::array<std::string, 2> edge;  // the two patches that share it
   int axis = 0;                     // kSymmetry: the plane x = 0, y = 0 or z = 0
+  Vec3 plane_point = Vec3::Zero();
+  Vec3 plane_normal = Vec3::UnitZ();  // of any length but zero
 };
 
 // Which interior knots the displacement keeps: the coarser, the larger the details that survive.
@@ -92,7 +100,17 @@ struct Sink {
 };
 
 enum class Method { kIsotropic, kAxis, kTaylor };
-enum class Continuity { kMeasured, kC0 };
+enum class Continuity {
+  kMeasured,  // what each join has, up to curvature
+  kTangent,   // of that, tangents only
+  kC0,        // positions only
+};
+
+// What to keep at the joins of two patches (or of one with itself), instead of the edit's default.
+struct EdgeContinuity {
+  std::array<std::string, 2> edge;
+  Continuity keep = Continuity::kMeasured;
+};
 
 struct Edit {
   std::string name;
@@ -102,6 +120,7 @@ struct Edit {
   std::vector<Move> moves;
   std::vector<Hold> holds;
   Continuity continuity = Continuity::kMeasured;
+  std::vector<EdgeContinuity> edge_continuity;
   VolumeGoal volume;
   Method method = Method::kIsotropic;
   std::array<int, 3> axis_order = {0, 1, 2};  // kAxis
@@ -115,6 +134,6 @@ struct EditScript {
 
 // The words of CONTRACT: "isotropic", "axis", "taylor".
 const char* name_of(Method method);
-const char* name_of(Continuity continuity);  // "measured", "C0"
+const char* name_of(Continuity continuity);  // "measured", "G1", "C0"
 
 }  // namespace isochor

@@ -82,7 +82,7 @@ struct EditSession::State {
   };
   struct Active {
     Edit edit;
-    PreparedEdit prepared;
+    std::unique_ptr<PreparedEdit> prepared;
     Snapshot candidate;
     Certificate certificate;
     double prepare_ms = 0.0;
@@ -173,12 +173,22 @@ Certificate EditSession::begin(const Edit& edit) {
   if (edit.method == Method::kAxis && edit.sink.kind == Sink::Kind::kDirection) {
     return state.refusal(edit, "a sink along a direction needs the method \"isotropic\"");
   }
+  if (edit.method == Method::kAxis) {
+    for (size_t k = 0; k < edit.holds.size(); ++k) {
+      const Hold::Kind kind = edit.holds[k].kind;
+      if (kind != Hold::Kind::kNormal && kind != Hold::Kind::kPlane) continue;
+      const std::string name = kind == Hold::Kind::kNormal ? ".normal" : ".plane";
+      return state.refusal(edit, "hold[" + std::to_string(k) + "]" + name +
+                                     " couples the axes, which the method \"axis\" takes one by "
+                                     "one: use \"isotropic\"");
+    }
+  }
   if (edit.moves.empty() && (!needs_volume || edit.volume.kind == VolumeGoal::Kind::kKeep)) {
     return state.refusal(edit, "the edit moves nothing and asks for no other volume");
   }
   const Stopwatch watch;
   PatchModel rest = refined_for(state.now.model, edit);
-  PreparedEdit prepared(std::move(rest), edit);
+  auto prepared = std::make_unique<PreparedEdit>(std::move(rest), edit);
   state.active.emplace(State::Active{edit, std::move(prepared), state.now, {}, 0.0});
   state.active->prepare_ms = watch.milliseconds();
   std::vector<Vec3> values;
@@ -199,7 +209,7 @@ void EditSession::State::solve(const std::vector<Vec3>& values) {
   const Stopwatch watch;
   const double wanted = wanted_change(active->edit.volume);
   Certificate certificate;
-  active->prepared.describe(certificate);
+  active->prepared->describe(certificate);
   certificate.volume.before = total();
   certificate.volume.wanted_change = wanted;
   active->certificate = std::move(certificate);
@@ -216,7 +226,7 @@ void EditSession::State::solve(const std::vector<Vec3>& values) {
     return;
   }
   const double scale = scale_of(std::max(std::abs(total()), std::abs(total() + wanted)));
-  const SolveResult result = active->prepared.solve_for(values, wanted, scale);
+  const SolveResult result = active->prepared->solve_for(values, wanted, scale);
   active->certificate.timings_ms["solve"] = watch.milliseconds();
   active->certificate.timings_ms["prepare"] = active->prepare_ms;
   fill(result, values);
@@ -227,6 +237,7 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
   certificate.outcome = result.outcome;
   certificate.reason = result.reason;
   certificate.conflicting = result.culprits;
+  certificate.conflicts = result.conflicts;
   certificate.redundant = result.redundant;
   certificate.rows = result.rows;
   certificate.rank = result.rank;
@@ -237,9 +248,9 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
   certificate.volume.after = total();
   if (result.outcome != Outcome::kDone) return;
 
-  const PatchModel& rest = active->prepared.rest();
+  const PatchModel& rest = active->prepared->rest();
   PatchModel after = rest;
-  after.points = active->prepared.displaced(result.delta);
+  after.points = active->prepared->displaced(result.delta);
   std::vector<Vec3> displacement(after.points.size());
   std::vector<int> moved;
   for (size_t i = 0; i < displacement.size(); ++i) {
@@ -248,17 +259,21 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
     certificate.max_distance = std::max(certificate.max_distance, displacement[i].norm());
   }
   certificate.poles_moved = static_cast<int>(moved.size());
+  std::vector<bool> moved_now(rest.patches.size(), false);
   for (size_t q = 0; q < rest.patches.size(); ++q) {
     if (!has_moved(rest.patches[q], displacement)) continue;
     ++certificate.patches_moved;
+    moved_now[q] = true;
     active->candidate.moved_patches[q] = true;
   }
   certificate.energy_before = result.positional_energy;
   certificate.energy_after = result.energy;
   fill_places(after, values, result.delta);
   certificate.joins = measure_joins(rest, after);
+  certificate.skin.residual = result.kept_residual;
+  certificate.skin.change = skin_change(rest, after, moved_now);
 
-  const VolumeForm& form = active->prepared.volume_form();
+  const VolumeForm& form = active->prepared->volume_form();
   VolumeRecord& volume = certificate.volume;
   // Of the points as they come out, rounded: more precise than what the solution aimed at.
   const Bounded change = form.bounded_change(rest.points, after.points, form.support_of(moved));
@@ -284,7 +299,7 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
 
 void EditSession::State::fill_places(const PatchModel& after, const std::vector<Vec3>& values,
                                      const std::vector<Vec3>& delta) {
-  const PreparedEdit& prepared = active->prepared;
+  const PreparedEdit& prepared = *active->prepared;
   const auto record_of = [&](const ResolvedPlace& place, const Vec3& asked) {
     MoveRecord record;
     record.place = place.text;

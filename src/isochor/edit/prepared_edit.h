@@ -2,7 +2,7 @@
 // any values of its moves. Internal to the edit layer; EditSession is its user.
 #pragma once
 
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +26,8 @@ class PreparedEdit {
  public:
   // `rest` is the refined model on which the edit acts. Throws InputError.
   PreparedEdit(PatchModel rest, const Edit& edit);
+  PreparedEdit(const PreparedEdit&) = delete;  // the solver points into this object
+  PreparedEdit& operator=(const PreparedEdit&) = delete;
 
   const PatchModel& rest() const { return rest_; }
   const VolumeForm& volume_form() const { return volume_; }
@@ -35,9 +37,9 @@ class PreparedEdit {
   // The displacement that value `value` of move k asks for ("by" or "to").
   Vec3 displacement(size_t k, const Vec3& value) const;
 
-  // Solves for the given values; `wanted_change` is that of the volume.
-  SolveResult solve_for(const std::vector<Vec3>& values, double wanted_change,
-                        double volume_scale) const;
+  // Solves for the given values; `wanted_change` is that of the volume. The first call judges the
+  // constraints and factors them, the next ones only solve.
+  SolveResult solve_for(const std::vector<Vec3>& values, double wanted_change, double volume_scale);
 
   // The points of rest() displaced by F delta.
   std::vector<Vec3> displaced(const std::vector<Vec3>& delta) const;
@@ -47,6 +49,11 @@ class PreparedEdit {
  private:
   ResolvedPlace resolve(const Place& place, const std::string& where) const;
   void resolve_holds();
+  void lock_edge(const Hold& hold, const std::string& name);
+  void hold_normal(const Place& place, const std::string& name);
+  void hold_plane(const Hold& hold, const std::string& name);
+  void make_solver();
+  std::vector<std::string> holds_that_lock(const CoefficientRow& row) const;
   void select_coefficients();
 
   PatchModel rest_;
@@ -56,7 +63,10 @@ class PreparedEdit {
   double size_ = 1.0;
   std::vector<ResolvedPlace> moves_, holds_;
   std::vector<std::string> hold_names_;
+  std::vector<LinearConstraint> kept_;  // by holds that ask for no value
+  std::vector<LinearConstraint> normals_;
   std::vector<char> extent_, sink_;
+  std::unique_ptr<EditSolver> solver_;
 };
 
 // The model of an edit's `refine`: exact knot insertion in the patches that the edit names.

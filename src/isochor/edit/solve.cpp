@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <sstream>
+#include <utility>
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
@@ -24,19 +26,61 @@ std::string list(const std::vector<std::string>& names) {
   return text;
 }
 
+// Exact when that is short; reports have all digits.
+std::string short_text(const Rational& value) {
+  constexpr size_t kReadable = 12;
+  std::string text = value.to_string();
+  if (text.size() <= kReadable) return text;
+  std::ostringstream rounded;
+  rounded << value.to_double();
+  return rounded.str();
+}
+
+// "move[0] and hold[1] contradict each other within the extent: 1 x move[0] - 1 x hold[1] reads
+// 0 = 0.1".
+std::string sentence(const NamedConflict& conflict) {
+  constexpr size_t kMostTerms = 6;
+  std::vector<std::string> names;
+  std::string sum;
+  for (size_t k = 0; k < conflict.constraints.size(); ++k) {
+    const std::string& name = conflict.constraints[k];
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    if (k == kMostTerms) sum += " + ...";
+    if (k >= kMostTerms) continue;
+    const Rational& multiplier = conflict.multipliers[k];
+    sum += k == 0 ? "" : multiplier.sign() < 0 ? " - " : " + ";
+    sum += short_text(multiplier.abs()) + " x " + name;
+  }
+  const std::string what = names.size() == 1 ? names.front() + " contradicts itself"
+                                             : list(names) + " contradict each other";
+  std::ostringstream text;
+  text << what << " within the extent: " << sum << " reads 0 = " << conflict.residual;
+  return text.str();
+}
+
 std::string print(double value) {  // std::to_string would print a change of 1e-18 as zero
   std::ostringstream text;
   text << value;
   return text.str();
 }
 
+// What does not depend on right-hand sides: constraint systems by the axes that they solve for.
+struct Prepared {
+  Support support;
+  std::map<unsigned, ConstraintSystem> positions, corrections;
+};
+
+Support support_of(const SolveProblem& problem) {
+  std::vector<char> moving = problem.extent;
+  for (size_t c = 0; c < moving.size(); ++c) moving[c] = moving[c] || problem.sink[c];
+  return problem.volume->support_of(problem.space->moved_points(moving));
+}
+
 // All state of one solve.
 class Solver {
  public:
-  explicit Solver(const SolveProblem& problem) : problem_(problem), space_(*problem.space) {
-    std::vector<char> moving = problem.extent;
-    for (size_t c = 0; c < moving.size(); ++c) moving[c] = moving[c] || problem.sink[c];
-    support_ = problem.volume->support_of(space_.moved_points(moving));
+  Solver(const SolveProblem& problem, Prepared& prepared)
+      : problem_(problem), space_(*problem.space), prepared_(prepared), support_(prepared.support) {
     result_.delta.assign(static_cast<size_t>(space_.size()), Vec3::Zero());
   }
 
@@ -56,6 +100,7 @@ class Solver {
       result_.achieved_change =
           problem_.volume->change(*problem_.points, points_at(result_.delta), support_);
       result_.energy = energy(result_.delta);
+      result_.kept_residual = kept_residual();
       check_size();
     }
     return std::move(result_);
@@ -96,18 +141,64 @@ class Solver {
     result_.culprits = std::move(culprits);
   }
 
-  ConstraintSystem positional_system(unsigned axes) {
-    std::vector<LinearConstraint> asked = problem_.constraints;
-    for (LinearConstraint& constraint : asked) constraint.axes &= axes;
-    return ConstraintSystem(space_, axis_slots(space_, problem_.extent, axes), asked, false,
-                            kReached * problem_.size);
+  // Summed equations are refused beforehand where axes are solved one by one.
+  static std::vector<LinearConstraint> restricted(std::vector<LinearConstraint> constraints,
+                                                  unsigned axes) {
+    for (LinearConstraint& constraint : constraints) constraint.axes &= axes;
+    return constraints;
   }
 
-  ConstraintSystem correction_system(unsigned axes) {
+  const ConstraintSystem& positional_system(unsigned axes) {
+    auto found = prepared_.positions.find(axes);
+    if (found == prepared_.positions.end()) {
+      ConstraintSystem system(space_, axis_slots(space_, problem_.extent, axes),
+                              restricted(problem_.constraints, axes), false,
+                              kReached * problem_.size, restricted(problem_.kept, axes));
+      return prepared_.positions.emplace(axes, std::move(system)).first->second;
+    }
+    std::vector<Vec3> values;
+    for (const LinearConstraint& constraint : problem_.constraints) {
+      values.push_back(constraint.value);
+    }
+    found->second.ask(values);
+    return found->second;
+  }
+
+  // Corrections solve the same equations with right-hand sides of zero: often on the same unknowns.
+  const ConstraintSystem& correction_system(unsigned axes) {
     const bool directed = problem_.sink_direction.squaredNorm() > 0.0;
+    if (!directed && problem_.sink == problem_.extent) return prepared_.positions.at(axes);
+    const auto found = prepared_.corrections.find(axes);
+    if (found != prepared_.corrections.end()) return found->second;
     Slots slots = directed ? direction_slots(space_, problem_.sink, problem_.sink_direction)
                            : axis_slots(space_, problem_.sink, axes);
-    return ConstraintSystem(space_, std::move(slots), problem_.constraints, true);
+    ConstraintSystem system(space_, std::move(slots), restricted(problem_.constraints, axes), true,
+                            0.0, restricted(problem_.kept, axes));
+    return prepared_.corrections.emplace(axes, std::move(system)).first->second;
+  }
+
+  // Of the displacement as it comes out, in doubles.
+  double kept_residual() const {
+    double largest = 0.0;
+    for (const LinearConstraint& kept : problem_.kept) {
+      Vec3 sum = Vec3::Zero();
+      Vec3 squares = Vec3::Zero();
+      for (size_t k = 0; k < kept.row.coefficient.size(); ++k) {
+        const Vec3& d = result_.delta[static_cast<size_t>(kept.row.coefficient[k])];
+        sum += kept.row.value[k].cwiseProduct(d);
+        squares += kept.row.value[k].cwiseAbs2();
+      }
+      if (kept.summed) {
+        largest = std::max(largest, std::abs(sum.sum()) / std::sqrt(squares.sum()));
+        continue;
+      }
+      for (int a = 0; a < 3; ++a) {
+        if (squares[a] > 0.0) {
+          largest = std::max(largest, std::abs(sum[a]) / std::sqrt(squares[a]));
+        }
+      }
+    }
+    return largest;
   }
 
   // Adds the counts of a system to the result; false when the positions alone are impossible.
@@ -127,9 +218,15 @@ class Solver {
       return false;
     }
     if (!system.conflicting().empty()) {
-      stop(Outcome::kConflicting,
-           "these contradict each other within the extent: " + list(system.conflicting()),
-           system.conflicting());
+      result_.conflicts = system.conflicts();
+      stop(Outcome::kConflicting, sentence(system.conflicts().front()), system.conflicting());
+      return false;
+    }
+    if (!system.unresolved().empty()) {
+      stop(Outcome::kUndecided,
+           "within this extent " + list(system.unresolved()) +
+               " can only be met by displacements beyond what doubles resolve: enlarge the extent",
+           system.unresolved());
       return false;
     }
     return true;
@@ -186,12 +283,12 @@ class Solver {
   }
 
   void isotropic() {
-    const ConstraintSystem positions = positional_system(7);
+    const ConstraintSystem& positions = positional_system(7);
     if (!accept(positions)) return;
     positions.add_to(positions.particular(), 1.0, result_.delta);
     result_.positional_energy = energy(result_.delta);
     if (problem_.volume_free) return;
-    const ConstraintSystem correction = correction_system(7);
+    const ConstraintSystem& correction = correction_system(7);
     const std::vector<Vec3> positional = result_.delta;
     const double missing = problem_.change - change_at(positional);
     std::vector<double> direction;
@@ -259,7 +356,7 @@ class Solver {
     for (size_t turn_of = 0; turn_of < 3; ++turn_of) {
       const int axis = problem_.axis_order[turn_of];
       const unsigned bit = 1u << axis;
-      const ConstraintSystem positions = positional_system(bit);
+      const ConstraintSystem& positions = positional_system(bit);
       if (!accept(positions)) return;
       const std::vector<Vec3> before = result_.delta;
       positions.add_to(positions.particular(), 1.0, result_.delta);
@@ -273,7 +370,7 @@ class Solver {
 
   // Makes the change of volume `wanted` by the one axis; the volume is affine in it.
   bool correct_axis(int axis, double wanted) {
-    const ConstraintSystem correction = correction_system(1u << axis);
+    const ConstraintSystem& correction = correction_system(1u << axis);
     const std::vector<Vec3> full = gradient_at(result_.delta);
     const std::vector<double> gradient = correction.pull_back(full);
     std::vector<double> direction = gradient;
@@ -298,12 +395,12 @@ class Solver {
   }
 
   void taylor() {
-    const ConstraintSystem positions = positional_system(7);
+    const ConstraintSystem& positions = positional_system(7);
     if (!accept(positions)) return;
     positions.add_to(positions.particular(), 1.0, result_.delta);
     result_.positional_energy = energy(result_.delta);
     if (problem_.volume_free) return;
-    const ConstraintSystem correction = correction_system(7);
+    const ConstraintSystem& correction = correction_system(7);
     const std::vector<Vec3> none(result_.delta.size(), Vec3::Zero());
     const std::vector<Vec3> full = gradient_at(none);
     const std::vector<double> gradient = correction.pull_back(full);
@@ -323,21 +420,47 @@ class Solver {
 
   const SolveProblem& problem_;
   const DisplacementSpace& space_;
-  Support support_;
+  Prepared& prepared_;
+  const Support& support_;
   SolveResult result_;
 };
 
 }  // namespace
 
-SolveResult solve(const SolveProblem& problem) {
-  ISOCHOR_REQUIRE(problem.space != nullptr && problem.volume != nullptr &&
-                  problem.points != nullptr);
-  const auto count = static_cast<size_t>(problem.space->size());
-  ISOCHOR_REQUIRE(problem.extent.size() == count && problem.sink.size() == count, count);
-  std::array<int, 3> axes = problem.axis_order;
+struct EditSolver::State {
+  SolveProblem problem;
+  Prepared prepared;
+};
+
+EditSolver::EditSolver(SolveProblem problem)
+    : state_(std::make_unique<State>(State{std::move(problem), {}})) {
+  const SolveProblem& given = state_->problem;
+  ISOCHOR_REQUIRE(given.space != nullptr && given.volume != nullptr && given.points != nullptr);
+  const auto count = static_cast<size_t>(given.space->size());
+  ISOCHOR_REQUIRE(given.extent.size() == count && given.sink.size() == count, count);
+  std::array<int, 3> axes = given.axis_order;
   std::sort(axes.begin(), axes.end());
   ISOCHOR_REQUIRE((axes == std::array<int, 3>{0, 1, 2}), axes[0], axes[1], axes[2]);
-  return Solver(problem).run();
+  state_->prepared.support = support_of(given);
+}
+
+EditSolver::~EditSolver() = default;
+EditSolver::EditSolver(EditSolver&&) noexcept = default;
+EditSolver& EditSolver::operator=(EditSolver&&) noexcept = default;
+
+SolveResult EditSolver::solve(const std::vector<Vec3>& values, double change, double volume_scale) {
+  SolveProblem& problem = state_->problem;
+  ISOCHOR_REQUIRE(values.size() == problem.constraints.size(), values.size());
+  for (size_t k = 0; k < values.size(); ++k) problem.constraints[k].value = values[k];
+  problem.change = change;
+  problem.volume_scale = volume_scale;
+  return Solver(problem, state_->prepared).run();
+}
+
+SolveResult solve(const SolveProblem& problem) {
+  std::vector<Vec3> values;
+  for (const LinearConstraint& constraint : problem.constraints) values.push_back(constraint.value);
+  return EditSolver(problem).solve(values, problem.change, problem.volume_scale);
 }
 
 double nearest_root(const LineCubic& c, double target) {

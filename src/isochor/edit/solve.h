@@ -13,6 +13,7 @@
 //  taylor     volume to first order only [HSB05]: the volume is *not* kept.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,8 @@ struct SolveProblem {
   std::vector<char> extent;                   // coefficients that may move
   std::vector<char> sink;                     // coefficients that may take the volume correction
   Vec3 sink_direction = Vec3::Zero();         // nonzero: the correction only goes along it
-  std::vector<LinearConstraint> constraints;
+  std::vector<LinearConstraint> constraints;  // asked for
+  std::vector<LinearConstraint> kept;         // equations of the skin: homogeneous, always there
   bool volume_free = false;
   double change = 0.0;        // wanted V(after) - V(before)
   double volume_scale = 1.0;  // |V|: the change is met within kVolumeKept times this
@@ -40,9 +42,11 @@ struct SolveProblem {
 
 struct SolveResult {
   Outcome outcome = Outcome::kDone;
-  std::string reason;                 // in words, when not done
-  std::vector<std::string> culprits;  // constraints to blame, as users wrote them
+  std::string reason;                    // in words, when not done
+  std::vector<std::string> culprits;     // constraints to blame, as users wrote them
+  std::vector<NamedConflict> conflicts;  // when conflicting: each with its proof
   std::vector<std::string> redundant;
+  double kept_residual = 0.0;  // largest of the kept rows at delta, rows of length 1; a length
   int rows = 0, rank = 0, freedom_left = 0;
   std::vector<Vec3> delta;         // by coefficient
   double achieved_change = 0.0;    // V(after) - V(before)
@@ -52,7 +56,25 @@ struct SolveResult {
   double stationarity = 0.0;  // sine of the angle between the last two directions
 };
 
-// Throws PreconditionError for sizes that do not fit. Never changes its inputs.
+// Solves one problem for many right-hand sides: verdicts and factorisations do not depend on them.
+class EditSolver {
+ public:
+  // What the problem points to must outlive the solver. PreconditionError for sizes that do not
+  // fit.
+  explicit EditSolver(SolveProblem problem);
+  ~EditSolver();
+  EditSolver(EditSolver&&) noexcept;
+  EditSolver& operator=(EditSolver&&) noexcept;
+
+  // values[k] is the right-hand side of constraint k; change and scale as in SolveProblem.
+  SolveResult solve(const std::vector<Vec3>& values, double change, double volume_scale);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// The same once, for the values of the problem.
 SolveResult solve(const SolveProblem& problem);
 
 // The real root of c.change(s) = target that is nearest to zero; not finite when there is none.

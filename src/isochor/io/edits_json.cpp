@@ -97,11 +97,21 @@ Hold parse_hold(const JsonValue& value) {
     if (pair.size() != 2) value.fail("an edge is named by its two faces");
     hold.edge = {pair[0], pair[1]};
   } else if (object.has("plane")) {
-    refuse(object["plane"], "a hold in a plane");
+    hold.kind = Hold::Kind::kPlane;
+    JsonObject plane(object["plane"]);
+    hold.plane_point = plane["point"].vec3();
+    const JsonValue normal = plane["normal"];
+    hold.plane_normal = normal.vec3();
+    if (!(hold.plane_normal.norm() > 0.0)) normal.fail("the normal is zero");
+    plane.finish();
   } else {
     hold.place = parse_place(object);
-    object.with("normal", [](const JsonValue& normal) {
-      if (normal.boolean()) refuse(normal, "holding a normal");
+    object.with("normal", [&](const JsonValue& normal) {
+      if (!normal.boolean()) return;
+      hold.kind = Hold::Kind::kNormal;
+      if (hold.place.kind == Place::Kind::kCoefficient) {
+        normal.fail("a coefficient has no normal: name a point of the surface");
+      }
     });
   }
   object.finish();
@@ -265,13 +275,36 @@ std::array<int, 3> parse_axis_order(const JsonValue& value) {
   return order;
 }
 
+Continuity parse_continuity(const JsonValue& value) {
+  const std::string name = value.text();
+  for (Continuity keep : {Continuity::kMeasured, Continuity::kTangent, Continuity::kC0}) {
+    if (name == name_of(keep)) return keep;
+  }
+  value.fail("expected \"measured\", \"G1\" or \"C0\", found " + value.print());
+}
+
+// One word for all joins, or {"default": word, "edges": [{"edge": [A, B], "keep": word}, ...]}.
+void parse_continuities(const JsonValue& value, Edit& edit) {
+  if (!value.is_object()) {
+    edit.continuity = parse_continuity(value);
+    return;
+  }
+  JsonObject object(value);
+  object.with("default", [&](const JsonValue& word) { edit.continuity = parse_continuity(word); });
+  const JsonValue edges = object["edges"];
+  for (size_t i = 0; i < edges.size(); ++i) {
+    JsonObject edge(edges.at(i));
+    const JsonValue names = edge["edge"];
+    const std::vector<std::string> pair = names.texts();
+    if (pair.size() != 2) names.fail("an edge is named by its two faces");
+    edit.edge_continuity.push_back({{pair[0], pair[1]}, parse_continuity(edge["keep"])});
+    edge.finish();
+  }
+  object.finish();
+}
+
 void parse_solver_keys(JsonObject& object, Edit& edit) {
-  object.with("continuity", [&](const JsonValue& value) {
-    if (value.is_object()) refuse(value, "continuity per edge");
-    const std::string name = value.text();
-    if (name != "measured" && name != "C0") value.fail("expected \"measured\" or \"C0\"");
-    edit.continuity = name == "C0" ? Continuity::kC0 : Continuity::kMeasured;
-  });
+  object.with("continuity", [&](const JsonValue& value) { parse_continuities(value, edit); });
   object.with("method", [&](const JsonValue& value) {
     const std::string name = value.text();
     if (name == "isotropic") {
@@ -410,10 +443,22 @@ Json format_hold(const Hold& hold) {
     out["symmetry"] = std::string(1, static_cast<char>('x' + hold.axis));
   } else if (hold.kind == Hold::Kind::kEdge) {
     out["edge"] = hold.edge;
+  } else if (hold.kind == Hold::Kind::kPlane) {
+    out["plane"] = {{"point", numbers(hold.plane_point)}, {"normal", numbers(hold.plane_normal)}};
   } else {
     put_place(out, hold.place);
+    if (hold.kind == Hold::Kind::kNormal) out["normal"] = true;
   }
   return out;
+}
+
+Json format_continuity(const Edit& edit) {
+  if (edit.edge_continuity.empty()) return name_of(edit.continuity);
+  Json edges = Json::array();
+  for (const EdgeContinuity& item : edit.edge_continuity) {
+    edges.push_back({{"edge", item.edge}, {"keep", name_of(item.keep)}});
+  }
+  return Json{{"default", name_of(edit.continuity)}, {"edges", edges}};
 }
 
 Json format_edit(const Edit& edit) {
@@ -427,7 +472,7 @@ Json format_edit(const Edit& edit) {
   for (const Move& move : edit.moves) out["move"].push_back(format_move(move));
   if (!edit.holds.empty()) out["hold"] = Json::array();
   for (const Hold& hold : edit.holds) out["hold"].push_back(format_hold(hold));
-  out["continuity"] = name_of(edit.continuity);
+  out["continuity"] = format_continuity(edit);
   out["volume"] = format_volume(edit.volume);
   out["method"] = name_of(edit.method);
   if (edit.method == Method::kAxis) {

@@ -31,6 +31,21 @@ Value volume_value(const VolumeRecord& volume) {
       .set("kept", volume.kept);
 }
 
+Value conflict_values(const std::vector<NamedConflict>& conflicts) {
+  Value list = Value::list();
+  for (const NamedConflict& conflict : conflicts) {
+    std::vector<std::string> multipliers;
+    for (const Rational& multiplier : conflict.multipliers) {
+      multipliers.push_back(multiplier.to_string());
+    }
+    list.push(Value::object()
+                  .set("constraints", conflict.constraints)
+                  .set("multipliers", multipliers)
+                  .set("residual", conflict.residual));
+  }
+  return list;
+}
+
 // The edit with all defaults written out, as the tree of its own file format.
 Value resolved_value(const Edit& edit) {
   const internal::Json document = internal::Json::parse(format_edits({{edit}}));
@@ -81,11 +96,20 @@ Value certificate_value(const Certificate& c) {
                         .set("max_angle_rad", c.joins.max_angle_rad)
                         .set("max_curvature_jump", c.joins.max_curvature_jump)
                         .set("angle_change_rad", c.joins.angle_change_rad))
+      .set("skin", Value::object()
+                       .set("relations", c.skin.relations)
+                       .set("residual", c.skin.residual)
+                       .set("joins", c.skin.change.joins)
+                       .set("knot_lines", c.skin.change.knot_lines)
+                       .set("poles", c.skin.change.poles)
+                       .set("angle_change_rad", c.skin.change.angle_rad)
+                       .set("curvature_change", c.skin.change.curvature))
       .set("constraints", Value::object()
                               .set("rows", c.rows)
                               .set("rank", c.rank)
                               .set("redundant", c.redundant)
                               .set("conflicting", c.conflicting)
+                              .set("conflicts", conflict_values(c.conflicts))
                               .set("freedom_left", c.freedom_left))
       .set("moved", Value::object()
                         .set("coefficients", c.coefficients)
