@@ -53,6 +53,31 @@ void print_patches(const LoadedModel& loaded, const Common& common) {
   }
 }
 
+// What equations keep, equal sentences once.
+void print_relations(const PatchModel& model, const Common& common) {
+  if (model.relations.empty()) return;
+  std::map<std::string, int> sentences;
+  for (const SmoothRelation& relation : model.relations) ++sentences[relation.text];
+  print(common, format("kept smooth by equations: %zu", model.relations.size()));
+  for (const auto& [text, count] : sentences) {
+    const std::string times = count > 1 ? format(" (%d times)", count) : "";
+    print(common, format("  %s%s", text.c_str(), times.c_str()));
+  }
+}
+
+Value relations_value(const PatchModel& model) {
+  Value relations = Value::list();
+  for (const SmoothRelation& relation : model.relations) {
+    relations.push(Value::object()
+                       .set("text", relation.text)
+                       .set("order", relation.order)
+                       .set("lambda", relation.lambda.to_string())
+                       .set("mu", relation.mu.to_string())
+                       .set("residual", relation.residual));
+  }
+  return relations;
+}
+
 void print_joins(const LoadedModel& loaded, const Common& common) {
   const PatchModel& model = loaded.patches;
   if (model.joins.empty()) return;
@@ -191,6 +216,7 @@ int run_info(const InfoOptions& options, const Common& common) {
   }
 #endif
   print_patches(loaded, common);
+  print_relations(model, common);
   print_joins(loaded, common);
   print(common, format("unit: %s", unit.c_str()));
   print(common, loaded.surroundings.closed
@@ -206,6 +232,7 @@ int run_info(const InfoOptions& options, const Common& common) {
   result.set("unit", unit)
       .set("patches", patches_value(model))
       .set("joins", joins)
+      .set("relations", relations_value(model))
       .set("closed", loaded.surroundings.closed)
       .set("why_open", loaded.surroundings.why_open)
       .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())

@@ -26,7 +26,9 @@ def main():
     real_files = [program] + ([options.real_files] if options.real_files else [])
     real_files += ["--out", options.build_folder / "acceptance" / "real_files"]
     commands = [("laws.py", [options.build_folder]), ("figure_four.py", [program]),
-                ("solids.py", [program]), ("real_files.py", real_files),
+                ("solids.py", [program]),
+                ("continuity.py", [program, "--out", options.build_folder / "acceptance" / "continuity"]),
+                ("real_files.py", real_files),
                 ("whole_solids.py", [options.build_folder / "bin" / "isochor_solid_probe",
                                      *([options.real_files] if options.real_files else [])])]
     here = pathlib.Path(__file__).resolve().parent

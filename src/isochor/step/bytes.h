@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "isochor/bspline/patch_model.h"
+#include "isochor/exact/rational.h"
 
 namespace isochor::internal {
 
@@ -128,6 +129,12 @@ struct Bytes<std::string> {
     in.raw(text.data(), size);
     return text;
   }
+};
+
+template <>
+struct Bytes<Rational> {
+  static void write(ByteWriter& out, const Rational& value) { out(value.to_string()); }
+  static Rational read(ByteReader& in) { return Rational::parse(Bytes<std::string>::read(in)); }
 };
 
 template <typename T, size_t N>

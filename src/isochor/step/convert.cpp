@@ -44,6 +44,7 @@ PatchModel whole_patches(const SolidModel& solid) {
   model.joins.clear();
   model.locked_sides.clear();
   model.lock_reasons.clear();
+  model.relations.clear();
   model.locks.clear();
   for (auto& patch : model.patches) patch.trim = {};
   return model;

@@ -37,12 +37,21 @@ void transfer(Io& io, Lock& f) {
 }
 template <typename Io>
 void transfer(Io& io, LockReason& f) {
-  io(f.text, f.continuity);
+  io(f.text, f.continuity, f.join);
+}
+template <typename Io>
+void transfer(Io& io, LineTerm& f) {
+  io(f.strip, f.row, f.value);
+}
+template <typename Io>
+void transfer(Io& io, SmoothRelation& f) {
+  io(f.kind, f.join, f.patch, f.across, f.knot, f.sides, f.order, f.lambda, f.mu, f.residual,
+     f.text, f.equations);
 }
 template <typename Io>
 void transfer(Io& io, PatchModel& f) {
   io(f.unit, f.points, f.patches, f.ties, f.joins, f.locked_sides, f.fixed_points, f.lock_reasons,
-     f.locks);
+     f.locks, f.relations);
 }
 template <typename Io>
 void transfer(Io& io, FaceFacts& f) {
