@@ -31,7 +31,9 @@ std::vector<std::string> named_patches(const EditScript& script) {
   for (const Edit& edit : script.edits) {
     for (const Move& move : edit.moves) names.insert(move.place.patch);
     for (const Hold& hold : edit.holds) {
-      if (hold.kind == Hold::Kind::kPlace) names.insert(hold.place.patch);
+      if (hold.kind == Hold::Kind::kPlace || hold.kind == Hold::Kind::kNormal) {
+        names.insert(hold.place.patch);
+      }
     }
     add_extent(edit.extent);
     if (edit.sink.kind == Sink::Kind::kOtherExtent) add_extent(edit.sink.extent);
@@ -82,6 +84,17 @@ void print_certificate(const Certificate& c, const std::string& unit, const Comm
   }
   print(common, format("  freedom used     %d coefficients in the extent, %d equations, %d left",
                        c.coefficients, c.rank, c.freedom_left));
+  if (c.skin.relations > 0) {
+    print(common,
+          format("  kept smooth      %d joins, knot lines or poles; angles changed by at most "
+                 "%.2g rad",
+                 c.skin.relations, c.skin.change.angle_rad));
+  }
+  if (!c.redundant.empty()) {
+    std::string names;
+    for (const std::string& name : c.redundant) names += (names.empty() ? "" : ", ") + name;
+    print(common, "  redundant        " + names + " (follows from the others: ignored)");
+  }
   print(common, format("  moved poles      %d, at most by %.4g %s", c.poles_moved, c.max_distance,
                        unit.c_str()));
   double asked = 0.0;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <random>
 
@@ -78,6 +79,32 @@ TEST_F(LinearConstraints, VerdictsDoNotDependOnTheOrderOfDisjointInput) {
   again.value = Vec3(1.001, 0, 0);
   EXPECT_THAT(system({a, b, again}).conflicting(), UnorderedElementsAre("a", "again"));
   EXPECT_THAT(system({again, a, b}).conflicting(), UnorderedElementsAre("a", "again"));
+}
+
+// Five places of a bilinear face have four degrees of freedom: who is to blame must not depend on
+// who came first.
+TEST_F(LinearConstraints, ConflictsAreTheSameInEveryOrder) {
+  const PatchModel flat = testing::prepared(testing::make_cube_model(1, 1));
+  const DisplacementSpace space(flat, {});
+  std::vector<LinearConstraint> asked;
+  const std::vector<Uv> places = {
+      {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.5, 0.5}, {0.5, 0.25}};
+  for (size_t k = 0; k < places.size(); ++k) {
+    const std::string name(1, static_cast<char>('a' + k));
+    asked.push_back({name, space.surface_row(flat, 0, places[k]), Vec3(0, 0, k == 4 ? 1 : 0)});
+  }
+  std::vector<int> order = {0, 1, 2, 3, 4};
+  const std::vector<char> all(static_cast<size_t>(space.size()), 1);
+  do {
+    std::vector<LinearConstraint> shuffled;
+    for (int k : order) shuffled.push_back(asked[static_cast<size_t>(k)]);
+    const ConstraintSystem system(space, axis_slots(space, all, 7), shuffled, false);
+    EXPECT_EQ(system.rank(), 12);
+    // (0.5, 0.25) lies between a and b.
+    EXPECT_THAT(system.conflicting(), UnorderedElementsAre("a", "b", "e"));
+    ASSERT_EQ(system.conflicts().size(), 1u);
+    EXPECT_EQ(system.conflicts()[0].constraints.size(), 3u);
+  } while (std::next_permutation(order.begin(), order.end()));
 }
 
 TEST_F(LinearConstraints, ASumOfThreeConflictsNamesAllThree) {

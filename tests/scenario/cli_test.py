@@ -267,6 +267,39 @@ class SuggestAndEdit(Scenario):
         self.assertEqual(edit["joins"]["max_gap"], 0)
         self.assertEqual(edit["resolved"]["continuity"], "measured")
 
+    def test_a_converted_cylinder_stays_smooth(self):
+        model = SOURCE / "data/step/cylinder.isochor.json"
+        edits = SOURCE / "data/edits/cylinder_bulge.json"
+        done = isochor("edit", model, edits, "-o", "out.isochor.json", "--report", "r.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("kept smooth      14 joins, knot lines or poles", done.stdout)
+        record = json.loads((WORK / "r.json").read_text())["edits"][0]
+        self.assertEqual(record["skin"]["relations"], 14)
+        self.assertLess(record["skin"]["angle_change_rad"], 1e-12)
+        self.assertLess(abs(record["volume"]["relative_change"]), 1e-13)
+        self.assertEqual(record["locked"], [])
+        info = self.run_json("info", model)
+        self.assertEqual(len(info["relations"]), 14)
+        self.assertEqual({r["lambda"] for r in info["relations"] if "one point" not in r["text"]}, {"1"})
+
+    def test_wishes_that_contradict_each_other_are_named_with_multipliers(self):
+        place = {"patch": "top", "uv": [0.5, 0.5]}
+        edit = {"extent": "all", "metric": "coefficients", "hold": [place, place],
+                "move": [{**place, "by": [0, 0, 0.1]}]}
+        (WORK / "e.json").write_text(json.dumps({"isochor_edits": 1, "edits": [edit]}))
+        self.expect(1, "edit", CUBE, "e.json", "-o", "out.isochor.json", "--report", "r.json",
+                    says="contradict each other within the extent", leaves=["r.json"])
+        record = json.loads((WORK / "r.json").read_text())["edits"][0]
+        self.assertEqual(record["outcome"], "conflicting")
+        for conflict in record["constraints"]["conflicts"]:
+            self.assertEqual(sorted(conflict["multipliers"]), ["-1", "1"])
+            self.assertIn("move[0]", conflict["constraints"])
+        edit["move"] = [{"patch": "top", "uv": [0.3, 0.5], "by": [0, 0, 0.1]}]
+        (WORK / "e.json").write_text(json.dumps({"isochor_edits": 1, "edits": [edit]}))
+        done = isochor("edit", CUBE, "e.json", "-o", "out.isochor.json")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("redundant        hold[1] (follows from the others: ignored)", done.stdout)
+
     def test_a_refusal_writes_the_report_only(self):
         edits = json.loads(PULL.read_text())
         edits["edits"][0]["extent"] = {"radius": 1e-9}
