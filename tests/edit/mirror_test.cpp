@@ -41,5 +41,13 @@ TEST(MirrorImages, CrowdedPlacesAreUsedOnce) {
   EXPECT_EQ(image, (std::vector<int>{1, 0, 3, 2}));
 }
 
+// Faces cut from one surface lie on each other: each must be mirrored onto itself where it can.
+TEST(MirrorImages, AreSoughtInTheOwnGroupFirst) {
+  const std::vector<Vec3> places = {{1, 2, 0},  {1, 2, 0}, {1, -2, 0},
+                                    {1, -2, 0}, {3, 1, 0}, {3, -1, 0}};
+  const std::vector<int> image = mirror_images(places, 1, 1e-6, {7, 8, 8, 7, 1, 2});
+  EXPECT_EQ(image, (std::vector<int>{3, 2, 1, 0, 5, 4})) << "else in any";
+}
+
 }  // namespace
 }  // namespace isochor

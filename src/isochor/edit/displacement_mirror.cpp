@@ -16,7 +16,7 @@ namespace isochor {
 // on the plane keeps its place on it.
 void DisplacementSpace::mirror(const PatchModel& model, int axis) {
   const double tolerance = kCoincident * diagonal(model);
-  const std::vector<int> image = mirror_images(places_, axis, tolerance);
+  const std::vector<int> image = mirror_images(places_, axis, tolerance, patch_of_);
   check_mirror(model, axis, image);
   const unsigned bit = 1u << axis;
   const size_t count = places_.size();
@@ -66,6 +66,14 @@ void DisplacementSpace::mirror(const PatchModel& model, int axis) {
   }
 }
 
+// The patch of the coefficient that a row of F has most of.
+int DisplacementSpace::patch_of_row(size_t row) const {
+  const auto largest = std::max_element(
+      rows_[row].begin(), rows_[row].end(),
+      [](const auto& a, const auto& b) { return std::abs(a.value) < std::abs(b.value); });
+  return patch_of(entries_[static_cast<size_t>(largest->entry)].coefficient);
+}
+
 // The rows of mirrored points must be mirrored rows, or "symmetric" would not be true of the shape.
 void DisplacementSpace::check_mirror(const PatchModel& model, int axis,
                                      const std::vector<int>& image) {
@@ -81,6 +89,10 @@ void DisplacementSpace::check_mirror(const PatchModel& model, int axis,
   }
   std::vector<Vec3> positions(rows_.size(), Vec3::Zero());
   std::vector<char> used(rows_.size(), 0);
+  std::vector<int> groups(rows_.size(), -1);
+  for (size_t c = 0; c < rows_.size(); ++c) {
+    if (!rows_[c].empty()) groups[c] = patch_of_row(c);
+  }
   for (const Patch& patch : model.patches) {
     for (int id : patch.points) {
       const auto c = static_cast<size_t>(class_of_point_[static_cast<size_t>(id)]);
@@ -88,7 +100,7 @@ void DisplacementSpace::check_mirror(const PatchModel& model, int axis,
       used[c] = 1;
     }
   }
-  const std::vector<int> point_image = mirror_images(positions, axis, tolerance);
+  const std::vector<int> point_image = mirror_images(positions, axis, tolerance, groups);
   for (size_t c = 0; c < rows_.size(); ++c) {
     if (!used[c]) continue;
     std::map<int, double> difference;

@@ -133,6 +133,7 @@ class DisplacementSpace {
   void check_ties(const PatchModel& model);
   void make_places(const PatchModel& model);
   void mirror(const PatchModel& model, int axis);
+  int patch_of_row(size_t row) const;
   void check_mirror(const PatchModel& model, int axis, const std::vector<int>& image);
   void apply_locks(const PatchModel& model, const Options& options);
   void choose_relations(const PatchModel& model, const Options& options);
