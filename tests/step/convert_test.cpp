@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -10,6 +11,8 @@
 #include "isochor/step/exchange.h"
 #include "step/shapes.h"
 #include "step/temp_folder.h"
+#include "support/models.h"
+#include "support/revolved.h"
 
 namespace isochor {
 namespace {
@@ -117,6 +120,22 @@ TEST(Convert, PatchModelsBecomeSolids) {
   const auto document = load_document(folder.file("cube.step"));
   EXPECT_EQ(document.unit.name, "inch");
   EXPECT_THAT(report.reread.names, ::testing::IsSupersetOf({"side 0", "side 5"}));
+}
+
+// A patch that meets nothing but itself is a solid too.
+TEST(Convert, OnePatchThatClosesOnItselfBecomesASolid) {
+  const TempFolder folder;
+  const double pi = std::acos(-1.0);
+  const std::vector<std::pair<PatchModel, double>> bodies = {
+      {testing::make_rational_torus(3.0, 1.0), 6.0 * pi * pi},
+      {testing::make_sphere(1.0), 4.0 / 3.0 * pi}};
+  for (const auto& [body, volume] : bodies) {
+    const auto report = write_patch_model(body, "body", folder.file("body.step"));
+    ASSERT_TRUE(report.written) << report.refusal;
+    EXPECT_TRUE(report.reread.valid && report.reread.closed);
+    EXPECT_EQ(report.reread.solids, 1);
+    EXPECT_NEAR(report.reread.volume, volume, 1e-12 * volume);
+  }
 }
 
 TEST(Convert, OpenPatchModelsStayOpen) {

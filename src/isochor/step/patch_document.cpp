@@ -39,21 +39,28 @@ TopoDS_Face face_of(const PatchModel& model, int q, const std::string& name, dou
   return face;
 }
 
+TopoDS_Shape solid_of(const TopoDS_Shell& shell) {
+  TopoDS_Solid solid = BRepBuilderAPI_MakeSolid(shell);
+  BRepLib::OrientClosedSolid(solid);
+  return solid;
+}
+
 // Closed shells become solids; everything else stays as it is.
 TopoDS_Shape with_solids(const TopoDS_Shape& sewn) {
   std::vector<TopoDS_Shape> parts;
   for (TopExp_Explorer it(sewn, TopAbs_SHELL); it.More(); it.Next()) {
     const auto& shell = TopoDS::Shell(it.Current());
-    if (!BRep_Tool::IsClosed(shell)) {
-      parts.push_back(shell);
-      continue;
-    }
-    TopoDS_Solid solid = BRepBuilderAPI_MakeSolid(shell);
-    BRepLib::OrientClosedSolid(solid);
-    parts.push_back(solid);
+    parts.push_back(BRep_Tool::IsClosed(shell) ? solid_of(shell) : TopoDS_Shape(shell));
   }
+  // Sewing leaves a face that meets nothing but itself without a shell: a torus, a sphere.
   for (TopExp_Explorer it(sewn, TopAbs_FACE, TopAbs_SHELL); it.More(); it.Next()) {
-    parts.push_back(it.Current());
+    TopoDS_Shell shell;
+    BRep_Builder builder;
+    builder.MakeShell(shell);
+    builder.Add(shell, it.Current());
+    const bool closed = BRep_Tool::IsClosed(shell);
+    shell.Closed(closed);
+    parts.push_back(closed ? solid_of(shell) : it.Current());
   }
   if (parts.size() == 1) return parts.front();
   TopoDS_Compound compound;
