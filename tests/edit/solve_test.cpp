@@ -6,6 +6,7 @@
 #include <random>
 
 #include "isochor/bspline/joins.h"
+#include "isochor/edit/nearest_root.h"
 #include "support/models.h"
 
 namespace isochor {

@@ -261,44 +261,46 @@ void ConstraintSystem::orthonormalise() {
   kept_rows_->rows.setFromTriplets(triplets.begin(), triplets.end());
   if (kept > 0) {
     kept_rows_->gram.compute(kept_rows_->rows * kept_rows_->rows.transpose());
-    ISOCHOR_REQUIRE(kept_rows_->gram.info() == Eigen::Success, kept);
-    if (!(kept_rows_->gram.vectorD().minCoeff() > kDependentPivot)) {
+    const bool factored = kept_rows_->gram.info() == Eigen::Success;
+    if (!factored) kept_rows_->rows.resize(0, static_cast<long>(slots_.size()));
+    if (!factored || !(kept_rows_->gram.vectorD().minCoeff() > kDependentPivot)) {
       add_unique(unresolved_, "continuity");
     }
   }
-  for (int row : asked_rows) {
-    const int e = equation_of_row_[static_cast<size_t>(row)];
-    const UnitRow unit = unit_row(row);
-    std::vector<double> values(slots_.size(), 0.0);
-    for (const auto& [slot, value] : unit.terms) values[static_cast<size_t>(slot)] = value;
-    unit_rows_.push_back(values);
-    unit_scale_.push_back(unit.scale);
-    basis_equation_.push_back(e);
-    std::vector<double> recipe(basis_equation_.size(), 0.0);
-    recipe.back() = 1.0;
-    for (int pass = 0; pass < 2; ++pass) {
-      project_kept(values);
-      for (size_t b = 0; b < basis_.size(); ++b) {
-        const double share = dot(values, basis_[b]);
-        for (size_t s = 0; s < values.size(); ++s) values[s] -= share * basis_[b][s];
-        for (size_t k = 0; k < recipe_[b].size(); ++k) recipe[k] -= share * recipe_[b][k];
-      }
+  for (int row : asked_rows) add_basis_row(row);
+}
+
+// What is left of an asked row after all before it; nothing that doubles can use: unresolved.
+void ConstraintSystem::add_basis_row(int row) {
+  const int e = equation_of_row_[static_cast<size_t>(row)];
+  const UnitRow unit = unit_row(row);
+  std::vector<double> values(slots_.size(), 0.0);
+  for (const auto& [slot, value] : unit.terms) values[static_cast<size_t>(slot)] = value;
+  const std::vector<double> given = values;
+  std::vector<double> recipe(basis_equation_.size() + 1, 0.0);
+  recipe.back() = 1.0;
+  for (int pass = 0; pass < 2; ++pass) {
+    project_kept(values);
+    for (size_t b = 0; b < basis_.size(); ++b) {
+      const double share = dot(values, basis_[b]);
+      for (size_t s = 0; s < values.size(); ++s) values[s] -= share * basis_[b][s];
+      for (size_t k = 0; k < recipe_[b].size(); ++k) recipe[k] -= share * recipe_[b][k];
     }
-    const double left = dot(values, values);
-    if (!(left > kDependentPivot)) {
-      const Equation& equation = equations_[static_cast<size_t>(e)];
-      add_unique(unresolved_, asked_names_[static_cast<size_t>(equation.constraint)]);
-      unit_rows_.pop_back();
-      unit_scale_.pop_back();
-      basis_equation_.pop_back();
-      continue;
-    }
-    const double normalise = 1.0 / std::sqrt(left);
-    for (double& value : values) value *= normalise;
-    for (double& value : recipe) value *= normalise;
-    basis_.push_back(std::move(values));
-    recipe_.push_back(std::move(recipe));
   }
+  const double left = dot(values, values);
+  if (!(left > kDependentPivot)) {
+    const Equation& equation = equations_[static_cast<size_t>(e)];
+    add_unique(unresolved_, asked_names_[static_cast<size_t>(equation.constraint)]);
+    return;
+  }
+  const double normalise = 1.0 / std::sqrt(left);
+  for (double& value : values) value *= normalise;
+  for (double& value : recipe) value *= normalise;
+  basis_.push_back(std::move(values));
+  recipe_.push_back(std::move(recipe));
+  unit_rows_.push_back(given);
+  unit_scale_.push_back(unit.scale);
+  basis_equation_.push_back(e);
 }
 
 void ConstraintSystem::ask(const std::vector<Vec3>& values) {

@@ -105,6 +105,7 @@ class ConstraintSystem {
   void build(const std::vector<LinearConstraint>& asked, const std::vector<LinearConstraint>& kept);
   std::vector<int> precedence(size_t first_asked) const;
   void orthonormalise();
+  void add_basis_row(int row);
   void project_kept(std::vector<double>& t) const;
   void explain(const Circuit& circuit, double residual);
   double value_of(const Equation& equation) const;

@@ -77,7 +77,4 @@ class EditSolver {
 // The same once, for the values of the problem.
 SolveResult solve(const SolveProblem& problem);
 
-// The real root of c.change(s) = target that is nearest to zero; not finite when there is none.
-double nearest_root(const LineCubic& c, double target);
-
 }  // namespace isochor
