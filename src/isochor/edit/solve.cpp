@@ -141,7 +141,8 @@ class Solver {
     result_.culprits = std::move(culprits);
   }
 
-  // Summed equations are refused beforehand where axes are solved one by one.
+  // Summed equations are refused beforehand where axes are solved one by one. Kept rows need no
+  // such copy: equations of axes without unknowns are left out.
   static std::vector<LinearConstraint> restricted(std::vector<LinearConstraint> constraints,
                                                   unsigned axes) {
     for (LinearConstraint& constraint : constraints) constraint.axes &= axes;
@@ -153,7 +154,7 @@ class Solver {
     if (found == prepared_.positions.end()) {
       ConstraintSystem system(space_, axis_slots(space_, problem_.extent, axes),
                               restricted(problem_.constraints, axes), false,
-                              kReached * problem_.size, restricted(problem_.kept, axes));
+                              kReached * problem_.size, problem_.kept);
       return prepared_.positions.emplace(axes, std::move(system)).first->second;
     }
     std::vector<Vec3> values;
@@ -173,7 +174,7 @@ class Solver {
     Slots slots = directed ? direction_slots(space_, problem_.sink, problem_.sink_direction)
                            : axis_slots(space_, problem_.sink, axes);
     ConstraintSystem system(space_, std::move(slots), restricted(problem_.constraints, axes), true,
-                            0.0, restricted(problem_.kept, axes));
+                            0.0, problem_.kept);
     return prepared_.corrections.emplace(axes, std::move(system)).first->second;
   }
 
