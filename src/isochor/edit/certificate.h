@@ -32,15 +32,6 @@ struct MoveRecord {
   double error = 0.0;
 };
 
-struct JoinRecord {
-  int count = 0;
-  double max_gap = 0.0;
-  double max_angle_rad = 0.0;
-  double max_curvature_jump = 0.0;
-  // The largest change of the above that the edit made at a join that was protected.
-  double angle_change_rad = 0.0;
-};
-
 // The equations that hold the skin together, and what became of it.
 struct SkinRecord {
   int relations = 0;      // joins, knot lines and poles whose smoothness equations keep

@@ -9,7 +9,6 @@
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
-#include "isochor/bspline/joins.h"
 #include "isochor/edit/prepared_edit.h"
 
 namespace isochor {
@@ -25,22 +24,6 @@ class Stopwatch {
  private:
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-JoinRecord measure_joins(const PatchModel& before, const PatchModel& after) {
-  JoinRecord record;
-  for (const Join& join : before.joins) {
-    const Join now = measure_join(after, join.a, join.b, join.opposed);
-    ++record.count;
-    record.max_gap = std::max(record.max_gap, now.max_gap);
-    record.max_angle_rad = std::max(record.max_angle_rad, now.max_angle_rad);
-    record.max_curvature_jump = std::max(record.max_curvature_jump, now.max_curvature_jump);
-    if (join.smoothness >= Smoothness::kAlmost) {
-      record.angle_change_rad =
-          std::max(record.angle_change_rad, std::abs(now.max_angle_rad - join.max_angle_rad));
-    }
-  }
-  return record;
-}
 
 void check_finite(const Vec3& vector, size_t move) {
   if (vector.allFinite()) return;
@@ -131,6 +114,8 @@ struct EditSession::State {
 
   void solve(const std::vector<Vec3>& values);
   void fill(const SolveResult& result, const std::vector<Vec3>& values);
+  // `after` becomes the candidate; `moved`: its points that have moved.
+  void fill_volume(const PatchModel& rest, PatchModel after, const std::vector<int>& moved);
   void fill_places(const PatchModel& after, const std::vector<Vec3>& values,
                    const std::vector<Vec3>& delta);
 };
@@ -269,12 +254,18 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
   certificate.energy_before = result.positional_energy;
   certificate.energy_after = result.energy;
   fill_places(after, values, result.delta);
-  certificate.joins = measure_joins(rest, after);
+  const SkinMeasures skin = active->prepared->measure_skin(after.points, moved_now);
+  certificate.joins = skin.joins;
   certificate.skin.residual = result.kept_residual;
-  certificate.skin.change = skin_change(rest, after, moved_now);
+  certificate.skin.change = skin.change;
+  fill_volume(rest, std::move(after), moved);
+}
 
+void EditSession::State::fill_volume(const PatchModel& rest, PatchModel after,
+                                     const std::vector<int>& moved) {
+  const bool free = active->edit.volume.kind == VolumeGoal::Kind::kFree;
   const VolumeForm& form = active->prepared->volume_form();
-  VolumeRecord& volume = certificate.volume;
+  VolumeRecord& volume = active->certificate.volume;
   // Of the points as they come out, rounded: more precise than what the solution aimed at.
   const Bounded change = form.bounded_change(rest.points, after.points, form.support_of(moved));
   volume.after = volume.before + change.value;

@@ -412,6 +412,12 @@ std::vector<Vec3> PreparedEdit::displaced(const std::vector<Vec3>& delta) const 
   return points;
 }
 
+SkinMeasures PreparedEdit::measure_skin(const std::vector<Vec3>& points,
+                                        const std::vector<bool>& moved) {
+  if (!gauge_) gauge_.emplace(rest_);
+  return gauge_->measure(points, moved);
+}
+
 void PreparedEdit::describe(Certificate& certificate) const {
   certificate.name = edit_.name;
   certificate.resolved = edit_;

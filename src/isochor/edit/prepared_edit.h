@@ -3,11 +3,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "isochor/edit/certificate.h"
 #include "isochor/edit/displacement_space.h"
+#include "isochor/edit/skin_change.h"
 #include "isochor/edit/solve.h"
 
 namespace isochor {
@@ -43,6 +45,8 @@ class PreparedEdit {
 
   // The points of rest() displaced by F delta.
   std::vector<Vec3> displaced(const std::vector<Vec3>& delta) const;
+  // The skin of other points of rest() against that of rest() itself.
+  SkinMeasures measure_skin(const std::vector<Vec3>& points, const std::vector<bool>& moved);
   // Fills what does not depend on the values: freedom, locks, resolved edit.
   void describe(Certificate& certificate) const;
 
@@ -67,6 +71,7 @@ class PreparedEdit {
   std::vector<LinearConstraint> normals_;
   std::vector<char> extent_, sink_;
   std::unique_ptr<EditSolver> solver_;
+  std::optional<SkinGauge> gauge_;  // from the first solution on
 };
 
 // The model of an edit's `refine`: exact knot insertion in the patches that the edit names.

@@ -6,41 +6,22 @@
 #include "isochor/base/error.h"
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
-#include "isochor/bspline/smoothness.h"
 
 namespace isochor {
 namespace {
 
-void add_angle(SkinChange& change, double before, double after) {
-  change.angle_rad = std::max(change.angle_rad, std::abs(after - before));
-}
+void raise(double& largest, double value) { largest = std::max(largest, value); }
 
-void add_curvature(SkinChange& change, double before, double after) {
-  change.curvature = std::max(change.curvature, std::abs(after - before));
-}
-
-void add_knot_lines(SkinChange& change, const Surface& before, const Surface& after, double size) {
-  for (Direction direction : {Direction::kU, Direction::kV}) {
-    const std::vector<KnotLine> lines = interior_smoothness(before, direction, size);
-    const std::vector<KnotLine> now = interior_smoothness(after, direction, size);
-    const int degree = knots_of(before, direction).degree();
-    for (size_t k = 0; k < lines.size(); ++k) {
-      const KnotLine& line = lines[k];
-      const int order = protected_order(line.measured, degree);
-      if (line.measured <= line.guaranteed || order <= degree - line.multiplicity) continue;
-      ++change.knot_lines;
-      add_angle(change, line.max_angle_rad, now[k].max_angle_rad);
-      if (order >= 2) add_curvature(change, line.max_curvature_jump, now[k].max_curvature_jump);
-    }
-  }
-}
-
-void add_poles(SkinChange& change, const Surface& before, const Surface& after, double size) {
-  for (Side side : kSides) {
-    const PoleSide pole = pole_side(before, side, size);
-    if (!pole.collapsed || pole.smoothness == Smoothness::kSharp) continue;
-    ++change.poles;
-    add_angle(change, pole.max_angle_rad, pole_side(after, side, size).max_angle_rad);
+void compare_lines(const std::vector<KnotLine>& before, const std::vector<KnotLine>& after,
+                   int degree, SkinChange& change) {
+  for (size_t k = 0; k < before.size(); ++k) {
+    const KnotLine& line = before[k];
+    const int order = protected_order(line.measured, degree);
+    if (line.measured <= line.guaranteed || order <= degree - line.multiplicity) continue;
+    ++change.knot_lines;
+    raise(change.angle_rad, std::abs(after[k].max_angle_rad - line.max_angle_rad));
+    if (order < 2) continue;
+    raise(change.curvature, std::abs(after[k].max_curvature_jump - line.max_curvature_jump));
   }
 }
 
@@ -54,31 +35,66 @@ int kept_order(const PatchModel& model, int join) {
 
 }  // namespace
 
-SkinChange skin_change(const PatchModel& before, const PatchModel& after,
-                       const std::vector<bool>& moved) {
-  ISOCHOR_REQUIRE(moved.size() == before.patches.size(), moved.size());
-  const double size = diagonal(before);
-  SkinChange change;
+SkinGauge::SkinGauge(const PatchModel& rest)
+    : rest_(rest), size_(diagonal(rest)), patches_(rest.patches.size()) {
+  // Not those that the model carries: an edit that kept positions only has left them behind.
+  for (const Join& join : rest.joins) {
+    joins_.push_back(measure_join(rest, join.a, join.b, join.opposed));
+  }
+}
+
+SkinGauge::PatchSkin SkinGauge::patch_skin(const Surface& surface) const {
+  PatchSkin skin;
+  skin.lines_u = interior_smoothness(surface, Direction::kU, size_);
+  skin.lines_v = interior_smoothness(surface, Direction::kV, size_);
+  for (size_t s = 0; s < kSides.size(); ++s) {
+    skin.sides[s] = pole_side(surface, kSides[s], size_);
+  }
+  return skin;
+}
+
+void SkinGauge::compare_patch(int q, const std::vector<Vec3>& points, SkinChange& change) {
+  auto& before = patches_[static_cast<size_t>(q)];
+  if (!before) before = patch_skin(rest_.surface(q));
+  const PatchSkin after = patch_skin(rest_.surface(q, points));
+  const Patch& patch = rest_.patches[static_cast<size_t>(q)];
+  compare_lines(before->lines_u, after.lines_u, patch.u_knots.degree(), change);
+  compare_lines(before->lines_v, after.lines_v, patch.v_knots.degree(), change);
+  for (size_t s = 0; s < kSides.size(); ++s) {
+    const PoleSide& pole = before->sides[s];
+    if (!pole.collapsed || pole.smoothness == Smoothness::kSharp) continue;
+    ++change.poles;
+    raise(change.angle_rad, std::abs(after.sides[s].max_angle_rad - pole.max_angle_rad));
+  }
+}
+
+SkinMeasures SkinGauge::measure(const std::vector<Vec3>& points, const std::vector<bool>& moved) {
+  ISOCHOR_REQUIRE(moved.size() == rest_.patches.size(), moved.size());
+  SkinMeasures measures;
+  auto& [all, change] = measures;
   for (int q = 0; q < static_cast<int>(moved.size()); ++q) {
-    if (!moved[static_cast<size_t>(q)]) continue;
-    const Surface was = before.surface(q);
-    const Surface is = before.surface(q, after.points);
-    add_knot_lines(change, was, is, size);
-    add_poles(change, was, is, size);
+    if (moved[static_cast<size_t>(q)]) compare_patch(q, points, change);
   }
-  for (int k = 0; k < static_cast<int>(before.joins.size()); ++k) {
-    const Join& join = before.joins[static_cast<size_t>(k)];
+  for (int k = 0; k < static_cast<int>(joins_.size()); ++k) {
+    const Join& stated = rest_.joins[static_cast<size_t>(k)];
+    const Join& before = joins_[static_cast<size_t>(k)];
     const bool touched =
-        moved[static_cast<size_t>(join.a.patch)] || moved[static_cast<size_t>(join.b.patch)];
-    if (!touched || join.smoothness == Smoothness::kSharp) continue;
+        moved[static_cast<size_t>(stated.a.patch)] || moved[static_cast<size_t>(stated.b.patch)];
+    const Join after =
+        touched ? measure_join(rest_, points, stated.a, stated.b, stated.opposed) : before;
+    ++all.count;
+    raise(all.max_gap, after.max_gap);
+    raise(all.max_angle_rad, after.max_angle_rad);
+    raise(all.max_curvature_jump, after.max_curvature_jump);
+    if (!touched || stated.smoothness == Smoothness::kSharp) continue;
+    const double turned = std::abs(after.max_angle_rad - before.max_angle_rad);
+    if (stated.smoothness >= Smoothness::kAlmost) raise(all.angle_change_rad, turned);
     ++change.joins;
-    const Join now = measure_join(before, after.points, join.a, join.b, join.opposed);
-    add_angle(change, join.max_angle_rad, now.max_angle_rad);
-    if (kept_order(before, k) >= 2) {
-      add_curvature(change, join.max_curvature_jump, now.max_curvature_jump);
-    }
+    raise(change.angle_rad, turned);
+    if (kept_order(rest_, k) < 2) continue;
+    raise(change.curvature, std::abs(after.max_curvature_jump - before.max_curvature_jump));
   }
-  return change;
+  return measures;
 }
 
 }  // namespace isochor
