@@ -67,6 +67,7 @@ function(isochor_add_test_program target layer sources link labels)
   add_executable(${target} ${sources})
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_link_libraries(${target} PRIVATE isochor_options ${link} GTest::gmock GTest::gtest_main)
+  target_compile_options(${target} PRIVATE ${ISOCHOR_TEST_OPTIONS})
   target_compile_definitions(${target} PRIVATE
     ISOCHOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     ISOCHOR_BINARY_DIR="${CMAKE_BINARY_DIR}")
