@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -22,8 +23,12 @@ void write_line(const std::string& text) {
   if (write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // nothing is lost with it
 }
 
-// A mark that runs to and fro.
-std::string bar(int tick) {
+// Filled from the left, or a mark that runs to and fro when `fraction` is not known.
+std::string bar(double fraction, int tick) {
+  if (fraction >= 0.0) {
+    const auto filled = static_cast<size_t>(kWidth * std::min(fraction, 1.0));
+    return std::string(filled, '=') + std::string(kWidth - filled, ' ');
+  }
   const int way = kWidth - kMark;
   const int turn = tick % (2 * way);
   const int at = turn < way ? turn : 2 * way - turn;
@@ -33,7 +38,8 @@ std::string bar(int tick) {
 
 }  // namespace
 
-BusyLine::BusyLine(const Common& common, std::string step) : step_(std::move(step)) {
+BusyLine::BusyLine(const Common& common, std::string step)
+    : cancel_(common.cancel), step_(std::move(step)) {
   if (common.quiet || common.progress == "never" || !isatty(STDERR_FILENO)) return;
   thread_ = std::thread([this] { run(); });
 }
@@ -48,14 +54,23 @@ BusyLine::~BusyLine() {
   thread_.join();
 }
 
+Watch BusyLine::watch() {
+  return {cancel_, [this](double fraction, std::string_view stage) {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            fraction_ = fraction;
+            stage_ = stage;
+          }};
+}
+
 void BusyLine::run() {
   const auto start = Clock::now();
   std::unique_lock<std::mutex> lock(mutex_);
   if (changed_.wait_for(lock, kSilent, [this] { return done_; })) return;
   for (int tick = 0; !done_; ++tick) {
     const std::chrono::duration<double> elapsed = Clock::now() - start;
-    write_line(
-        format("\r\033[K[%s] %s  %.0f s", bar(tick).c_str(), step_.c_str(), elapsed.count()));
+    const std::string stage = stage_.empty() ? "" : ": " + stage_;
+    write_line(format("\r\033[K[%s] %s%s  %.0f s", bar(fraction_, tick).c_str(), step_.c_str(),
+                      stage.c_str(), elapsed.count()));
     changed_.wait_for(lock, kTick, [this] { return done_; });
   }
   write_line("\r\033[K");

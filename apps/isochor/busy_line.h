@@ -1,7 +1,7 @@
 // A moving bar on stderr while something takes longer than a second.
 //
-// The work is done by OpenCASCADE in a child process or by one factorisation: neither says how far
-// it has come, so the bar shows that the program lives, at what, and for how long.
+// Reading and writing CAD files tells how far it has come; a factorisation does not, and the bar
+// then shows only that the program lives, at what, and for how long.
 #pragma once
 
 #include <condition_variable>
@@ -22,10 +22,16 @@ class BusyLine {
   BusyLine(const BusyLine&) = delete;
   BusyLine& operator=(const BusyLine&) = delete;
 
+  // For the work that is shown; it must not outlive the line.
+  Watch watch();
+
  private:
   void run();
 
+  const CancelToken cancel_;
   std::string step_;
+  double fraction_ = -1.0;  // negative: not known
+  std::string stage_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool done_ = false;

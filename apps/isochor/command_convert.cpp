@@ -32,8 +32,8 @@ int finish(const ConvertOptions& options, const Common& common,
 #ifdef ISOCHOR_WITH_OCCT
 template <typename Write>
 WriteReport write_busily(const ConvertOptions& options, const Common& common, Write write) {
-  const BusyLine busy(common, "writing and checking " + options.output);
-  return write(read_options(common).limits);
+  BusyLine busy(common, "writing and checking " + options.output);
+  return write(read_options(common, busy));
 }
 
 template <typename Write>
@@ -70,14 +70,15 @@ int run_convert(const ConvertOptions& options, const Common& common) {
   }
 #ifdef ISOCHOR_WITH_OCCT
   if (is_cad_file(options.input) && is_cad_file(options.output)) {
-    return finish_checked(options, common, [&](const BridgeLimits& limits) {
-      return convert_file(options.input, options.output, limits);
+    return finish_checked(options, common, [&](const ReadOptions& read) {
+      return convert_file(options.input, options.output, read.limits, read.watch);
     });
   }
   if (from_json && is_cad_file(options.output)) {
     const LoadedModel loaded = load_model(options.input, common);
-    return finish_checked(options, common, [&](const BridgeLimits& limits) {
-      return write_patch_model(loaded.patches, options.input, options.output, limits);
+    return finish_checked(options, common, [&](const ReadOptions& read) {
+      return write_patch_model(loaded.patches, options.input, options.output, read.limits,
+                               read.watch);
     });
   }
   if (is_cad_file(options.input) && to_json) {

@@ -55,12 +55,13 @@ std::vector<Certificate> apply_all(const EditScript& script, EditSession& sessio
   for (size_t k = 0; k < script.edits.size(); ++k) {
     const BusyLine busy(common, "edit \"" + script.edits[k].name + "\"");
     try {
-      certificates.push_back(session.apply(script.edits[k]));
+      certificates.push_back(session.apply(script.edits[k], common.cancel));
     } catch (const InputError& error) {
       const std::string where = "edits[" + std::to_string(k) + "]";
       throw InputError(edits_path, error.entity().empty() ? where : where + ": " + error.entity(),
                        error.reason());
     }
+    if (common.cancel.cancelled()) throw CancelledError();
     if (certificates.back().outcome != Outcome::kDone) break;
   }
   return certificates;

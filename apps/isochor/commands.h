@@ -6,9 +6,18 @@
 #include <string>
 #include <vector>
 
+#include "isochor/base/progress.h"
+
 namespace isochor::app {
 
-enum ExitCode { kExitDone = 0, kExitNo = 1, kExitUsage = 2, kExitInput = 3, kExitBug = 4 };
+enum ExitCode {
+  kExitDone = 0,
+  kExitNo = 1,
+  kExitUsage = 2,
+  kExitInput = 3,
+  kExitBug = 4,
+  kExitCancelled = 130
+};
 
 // Options that every command has.
 struct Common {
@@ -19,6 +28,7 @@ struct Common {
   std::string progress = "auto";
   double bridge_seconds = 300.0;  // limits of the child process that reads and writes CAD files
   double bridge_megabytes = 8192.0;
+  CancelToken cancel;  // raised by Ctrl-C
 };
 
 struct InfoOptions {

@@ -1,7 +1,6 @@
 #include "edit_output.h"
 
 #include "busy_line.h"
-
 #include "isochor/base/error.h"
 #include "isochor/io/file.h"
 #include "isochor/io/model_json.h"
@@ -38,9 +37,9 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
       faces.push_back({static_cast<int>(f), session.model().surface(static_cast<int>(q))});
     }
   }
-  ReadOptions options = read_options(common);
+  BusyLine busy(common, "writing and checking " + output);
+  ReadOptions options = read_options(common, busy);
   options.convert = before.converted;
-  const BusyLine busy(common, "writing and checking " + output);
   const WriteReport report = write_edited(before.path, options, faces, output);
   WrittenModel result;
   result.written = report.written;

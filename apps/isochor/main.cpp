@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "isochor/base/error.h"
 
 namespace isochor::app {
@@ -19,7 +20,8 @@ void add_common(CLI::App& app, Common& common) {
   app.add_option("--progress", common.progress, "a bar on stderr for long work: auto or never")
       ->check(CLI::IsMember({"auto", "never"}));
   app.add_option("--time-limit", common.bridge_seconds,
-                 "seconds of processor time for reading, converting or writing a CAD file")
+                 "seconds of processor time (and five times as much by the clock) for "
+                 "reading, converting or writing a CAD file")
       ->check(CLI::PositiveNumber);
   app.add_option("--memory-limit", common.bridge_megabytes,
                  "megabytes for reading, converting or writing a CAD file")
@@ -125,17 +127,34 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitUsage;
   }
+  cancel_on_signals(common.cancel);
   return action();
 }
 
 }  // namespace
 }  // namespace isochor::app
 
+namespace {
+
+// Which option allows more.
+const char* remedy(isochor::LimitError::Limit limit) {
+  return limit == isochor::LimitError::Limit::kTime ? "--time-limit SECONDS"
+                                                    : "--memory-limit MEGABYTES";
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   // Results and remarks keep their order also where both go to one file.
   std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
   try {
     return isochor::app::run(argc, argv);
+  } catch (const isochor::CancelledError&) {
+    std::fputs("isochor: cancelled\n", stderr);
+    return isochor::app::kExitCancelled;
+  } catch (const isochor::LimitError& error) {
+    std::fprintf(stderr, "isochor: %s; %s allows more\n", error.what(), remedy(error.limit()));
+    return isochor::app::kExitInput;
   } catch (const isochor::InputError& error) {
     std::fprintf(stderr, "isochor: %s\n", error.what());
     return isochor::app::kExitInput;

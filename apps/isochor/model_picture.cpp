@@ -17,12 +17,13 @@ namespace isochor::app {
 namespace {
 
 // Adds the faces that are no patches, which no edit moves.
-void add_other_faces(const LoadedModel& model, const Common& common, Mesh& mesh,
+void add_other_faces(const LoadedModel& model, const Common& common, BusyLine& busy, Mesh& mesh,
                      std::vector<LineSet>& lines) {
 #ifdef ISOCHOR_WITH_OCCT
   if (!model.solid) return;
   SolidMeshOptions options;
-  options.limits = read_options(common).limits;
+  options.limits = read_options(common, busy).limits;
+  options.watch = busy.watch();
   const SolidMesh solid = mesh_solid(model.path, options);
   const auto is_patch = [&](int face) {
     return model.solid->faces[static_cast<size_t>(face)].patch >= 0;
@@ -40,6 +41,7 @@ void add_other_faces(const LoadedModel& model, const Common& common, Mesh& mesh,
 #else
   (void)model;
   (void)common;
+  (void)busy;
   (void)mesh;
   (void)lines;
 #endif
@@ -55,14 +57,14 @@ std::vector<Surface> surfaces_of(const PatchModel& model) {
 }  // namespace
 
 ModelMesh mesh_of(const LoadedModel& model, const Common& common) {
-  const BusyLine busy(common, "cutting " + model.path + " into triangles");
+  BusyLine busy(common, "cutting " + model.path + " into triangles");
   ModelMesh result;
   if (!model.patches.patches.empty()) {
     const Tessellator tessellator(model.patches);
     result.mesh = tessellator.mesh();
     result.lines = tessellator.borders();
   }
-  add_other_faces(model, common, result.mesh, result.lines);
+  add_other_faces(model, common, busy, result.mesh, result.lines);
   return result;
 }
 
@@ -75,7 +77,7 @@ void require_picture(const std::string& path) {
 
 Image draw_edit(const LoadedModel& before, const EditSession& session,
                 const std::vector<Certificate>& certificates, const Common& common) {
-  const BusyLine busy(common, "drawing the edit");
+  BusyLine busy(common, "drawing the edit");
   // Cut on the edited shape, so that the cells are fine enough for it, and evaluated on both.
   const PatchModel& now = session.model();
   const std::vector<Surface> then = surfaces_of(before.patches);
@@ -87,7 +89,7 @@ Image draw_edit(const LoadedModel& before, const EditSession& session,
   input.after_lines = tessellator.borders();
   Mesh others;
   std::vector<LineSet> edges;
-  add_other_faces(before, common, others, edges);
+  add_other_faces(before, common, busy, others, edges);
   if (!others.empty()) {
     append(input.before, others, 0);
     append(input.after, others, 0);

@@ -81,8 +81,9 @@ bool is_cad_file(const std::string& path) {
 
 #ifdef ISOCHOR_WITH_OCCT
 
-ReadOptions read_options(const Common& common) {
+ReadOptions read_options(const Common& common, BusyLine& busy) {
   ReadOptions options;
+  options.watch = busy.watch();
   options.limits.seconds = common.bridge_seconds;
   options.limits.megabytes = common.bridge_megabytes;
   return options;
@@ -124,8 +125,8 @@ namespace {
 SolidModel read_converted(const std::string& path, const Common& common,
                           const std::vector<std::string>& convert, const ShapeMeasures& measures,
                           std::vector<int>& converted) {
-  const BusyLine busy(common, "reading " + path);
-  ReadOptions options = read_options(common);
+  BusyLine busy(common, "reading " + path);
+  ReadOptions options = read_options(common, busy);
   options.moments = measures.moments;
   options.section = measures.section;
   SolidModel solid = read_solid(path, options);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "busy_line.h"
 #include "commands.h"
 #include "isochor/bspline/patch_model.h"
 #include "isochor/edit/edit_session.h"
@@ -51,7 +52,8 @@ LoadedModel load_model(const std::string& path, const Common& common,
                        const ShapeMeasures& measures = {});
 
 #ifdef ISOCHOR_WITH_OCCT
-ReadOptions read_options(const Common& common);
+// Limits as the user set them; progress to `busy`, which must outlive the reading.
+ReadOptions read_options(const Common& common, BusyLine& busy);
 // 0-based index of the face called `name`. Throws InputError (unknown, ambiguous).
 int find_face(const SolidModel& solid, const std::string& name);
 #endif

@@ -40,6 +40,22 @@ TEST(Progress, CancellingTwiceIsLikeOnce) {
   EXPECT_TRUE(token.cancelled());
 }
 
+TEST(Progress, APartOfTheWorkHasItsShareOfTheFractions) {
+  std::string seen;
+  Watch whole;
+  whole.progress = [&](double fraction, std::string_view step) {
+    seen += std::string(step) + ' ' + std::to_string(fraction) + '\n';
+  };
+  const Watch second = whole.part(0.5, 1.0);
+  second.progress(0.0, "a");
+  second.part(0.5, 1.0).progress(1.0, "b");
+  EXPECT_EQ(seen, "a 0.500000\nb 1.000000\n");
+  second.cancel.cancel();
+  EXPECT_TRUE(whole.cancel.cancelled());
+}
+
+TEST(Progress, APartOfSilentWorkIsSilent) { EXPECT_FALSE(Watch().part(0.0, 0.5).progress); }
+
 TEST(Progress, ACallbackMayBeEmpty) {
   EXPECT_FALSE(ProgressCallback());
   std::string seen;

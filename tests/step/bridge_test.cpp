@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -16,6 +17,7 @@
 #include <thread>
 
 #include "isochor/base/error.h"
+#include "isochor/step/child_progress.h"
 
 namespace isochor {
 namespace {
@@ -141,11 +143,115 @@ TEST(Bridge, MemoryIsLimited) {
   EXPECT_THAT(result.reason, HasSubstr("2000 MB"));
 }
 
+TEST(Bridge, LimitsHaveAnErrorOfTheirOwn) {
+  const auto endless = []() -> std::string {
+    burn();
+    return "";
+  };
+  try {
+    run_in_child("slow.step", endless, seconds(1));
+    FAIL() << "no LimitError";
+  } catch (const LimitError& e) {
+    EXPECT_EQ(e.limit(), LimitError::Limit::kTime);
+    EXPECT_EQ(e.file(), "slow.step");
+    EXPECT_THAT(e.reason(), HasSubstr("1 s"));
+  }
+  if (kSanitized) return;
+  BridgeLimits limits;
+  limits.megabytes = 2000;
+  try {
+    run_in_child("big.step", eat_memory, limits);
+    FAIL() << "no LimitError";
+  } catch (const LimitError& e) {
+    EXPECT_EQ(e.limit(), LimitError::Limit::kMemory);
+    EXPECT_EQ(e.file(), "big.step");
+  }
+}
+
+TEST(Bridge, ProgressArrivesInOrderAndNeverGoesBack) {
+  std::vector<double> fractions;
+  std::vector<std::string> steps;
+  Watch watch;
+  watch.progress = [&](double fraction, std::string_view step) {
+    fractions.push_back(fraction);
+    steps.emplace_back(step);
+  };
+  const auto work = [] {
+    {
+      const internal::ProgressPart part(0.0, 0.5);
+      internal::tell_progress(0.0, "reading");
+      for (int k = 0; k <= 100; ++k) internal::tell_progress(0.01 * k, "reading");
+      internal::tell_progress(0.2, "reading again");  // a stage that starts over
+      const internal::ProgressPart inner(0.5, 1.0);
+      internal::tell_progress(7.0, "beyond");
+    }
+    internal::tell_progress(0.5, "measuring");
+    internal::tell_progress(1.0, "measuring");
+    return std::string("done");
+  };
+  EXPECT_EQ(run_in_child("f", work, {}, watch), "done");
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_EQ(fractions.front(), 0.0);
+  EXPECT_EQ(fractions.back(), 1.0);
+  EXPECT_EQ(steps.front(), "reading");
+  EXPECT_EQ(steps.back(), "measuring");
+  EXPECT_NE(std::find(steps.begin(), steps.end(), "reading again"), steps.end());
+  // Half a percent is the least that is worth a message.
+  EXPECT_LE(fractions.size(), 106u);
+  EXPECT_GE(fractions.size(), 50u);
+}
+
+TEST(Bridge, ProgressOutsideAChildGoesNowhere) {
+  internal::tell_progress(0.5, "nobody listens");
+  std::vector<double> heard;
+  internal::set_progress_sink(
+      [&](double fraction, std::string_view) { heard.push_back(fraction); });
+  {
+    const internal::ProgressPart half(0.5, 1.0);
+    internal::tell_progress(0.5, "here");
+  }
+  internal::set_progress_sink({});
+  internal::tell_progress(1.0, "nobody again");
+  EXPECT_EQ(heard, std::vector<double>{0.75});
+}
+
+TEST(Bridge, AnErrorAfterProgressIsStillTheError) {
+  const auto work = []() -> std::string {
+    internal::tell_progress(0.3, "reading");
+    throw InputError("a.step", "#7", "is odd");
+  };
+  EXPECT_EQ(input_error_of([&] { run_in_child("a.step", work); }).entity(), "#7");
+  const auto dies = []() -> std::string {
+    internal::tell_progress(0.3, "reading");
+    _exit(1);
+  };
+  EXPECT_EQ(run_child(dies).end, ChildEnd::kDied);
+}
+
+TEST(Bridge, KeysForTheParentDoNotEndTheChild) {
+  const auto result = run_child([]() -> std::string {
+    std::raise(SIGINT);
+    std::raise(SIGTERM);
+    return "alive";
+  });
+  EXPECT_EQ(result.end, ChildEnd::kFinished);
+  EXPECT_EQ(result.bytes, "alive");
+}
+
+TEST(Bridge, CancelledBeforeTheStartIsCancelled) {
+  Watch watch;
+  watch.cancel.cancel();
+  const auto work = [] { return std::string("ran"); };
+  EXPECT_EQ(run_child(work, {}, watch).end, ChildEnd::kCancelled);
+  EXPECT_THROW(run_in_child("f", work, {}, watch), CancelledError);
+}
+
 TEST(Bridge, CancellingStopsTheChild) {
-  const CancelToken cancel;
+  const Watch watch;
   std::thread later([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    cancel.cancel();
+    watch.cancel.cancel();
   });
   const auto start = std::chrono::steady_clock::now();
   const auto result = run_child(
@@ -153,7 +259,7 @@ TEST(Bridge, CancellingStopsTheChild) {
         burn();
         return "";
       },
-      {}, cancel);
+      {}, watch);
   later.join();
   EXPECT_EQ(result.end, ChildEnd::kCancelled);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));

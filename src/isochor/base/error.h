@@ -39,6 +39,26 @@ class InputError : public std::runtime_error {
   std::string reason_;
 };
 
+// Outside data that would take more time or memory than the caller allows: not wrong in itself, and
+// a larger limit may do.
+class LimitError : public InputError {
+ public:
+  enum class Limit { kTime, kMemory };
+  LimitError(Limit limit, const std::string& file, const std::string& reason)
+      : InputError(file, "", reason), limit_(limit) {}
+  Limit limit() const { return limit_; }
+
+ private:
+  Limit limit_;
+};
+
+// Work that the user ended before it had a result. Whoever started it asked for that, so this is no
+// error; functions that can report it as an outcome do so instead.
+class CancelledError : public std::runtime_error {
+ public:
+  CancelledError() : std::runtime_error("cancelled") {}
+};
+
 namespace internal {
 
 [[noreturn]] void throw_precondition(const char* condition, const char* file, int line,

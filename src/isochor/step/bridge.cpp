@@ -17,6 +17,7 @@
 #include <system_error>
 
 #include "isochor/base/error.h"
+#include "isochor/step/child_progress.h"
 #include "isochor/step/occt_wall.h"
 
 namespace isochor {
@@ -38,8 +39,15 @@ constexpr bool kLimitMemory = false;
 constexpr bool kLimitMemory = true;
 #endif
 
-// What the child says before it ends; a child that says nothing died.
-enum class Message : unsigned char { kResult, kInputError, kError, kOutOfMemory, kSignal };
+// What the child says: progress, and one of the others before it ends; a child that does not, died.
+enum class Message : unsigned char {
+  kProgress,
+  kResult,
+  kInputError,
+  kError,
+  kOutOfMemory,
+  kSignal
+};
 
 void set_limit(int resource, rlim_t soft, rlim_t hard) {
   rlimit limit{};
@@ -82,8 +90,69 @@ std::string message(Message kind, const std::string& a, const std::string& b = {
   return out.take();
 }
 
+// Messages follow each other in the pipe, each after its size.
+void send(int out, const std::string& bytes) {
+  const std::uint64_t size = bytes.size();
+  write_all(out, std::string(reinterpret_cast<const char*>(&size), sizeof size));
+  write_all(out, bytes);
+}
+
+// What a child says when memory runs out, made while there is some, and where.
+struct LastWords {
+  int out = -1;
+  double megabytes = 0.0;
+  std::string frame;
+};
+LastWords& last_words() {
+  static LastWords of_this_process;
+  return of_this_process;
+}
+
+// OpenCASCADE takes a failed allocation for many things: an abort, a file that cannot be parsed, a
+// face less. So whatever goes wrong this close to the limit is put down to the limit.
+constexpr double kNearLimit = 0.7;
+
+// Safe in signal handlers: no allocation.
+bool near_memory_limit() {
+  if (!kLimitMemory) return false;
+  char text[4096];
+  const int status = open("/proc/self/status", O_RDONLY);
+  if (status < 0) return false;
+  const ssize_t size = read(status, text, sizeof text - 1);
+  close(status);
+  if (size <= 0) return false;
+  text[size] = '\0';
+  const char* peak = strstr(text, "VmPeak:");
+  if (peak == nullptr) return false;
+  double kilobytes = 0.0;
+  for (const char* c = peak + 7; *c != '\0' && *c != '\n'; ++c) {
+    if (*c >= '0' && *c <= '9') kilobytes = 10.0 * kilobytes + (*c - '0');
+  }
+  return kilobytes > kNearLimit * 1024.0 * last_words().megabytes;
+}
+
+[[noreturn]] void say_out_of_memory() {
+  write_all(last_words().out, last_words().frame);
+  _exit(0);
+}
+
+void on_abort(int /*signal*/) {
+  if (near_memory_limit()) say_out_of_memory();
+  std::signal(SIGABRT, SIG_DFL);
+  std::raise(SIGABRT);
+}
+
+void prepare_last_words(int out, const BridgeLimits& limits) {
+  const std::string text = message(Message::kOutOfMemory, "");
+  const std::uint64_t size = text.size();
+  last_words() = {out, limits.megabytes,
+                  std::string(reinterpret_cast<const char*>(&size), sizeof size) + text};
+  std::set_new_handler(say_out_of_memory);
+  std::signal(SIGABRT, on_abort);
+}
+
 // Runs the work behind OpenCASCADE's wall and turns every end into a message.
-std::string guarded(const std::function<std::string()>& work) {
+std::string ended(const std::function<std::string()>& work) {
   try {
     const auto fault = internal::behind_occt_wall(work);
     switch (fault.kind) {
@@ -108,18 +177,38 @@ std::string guarded(const std::function<std::string()>& work) {
   }
 }
 
+// Keys pressed at a terminal reach the whole group; the parent decides what they mean. Blocked, not
+// ignored, because OpenCASCADE sets handlers of its own.
+void leave_cancelling_to_parent() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) sigaddset(&signals, signal);
+  sigprocmask(SIG_BLOCK, &signals, nullptr);
+}
+
+std::string guarded(const std::function<std::string()>& work) {
+  std::string end = ended(work);
+  const auto kind = static_cast<Message>(end.front());
+  if (kind != Message::kResult && near_memory_limit()) return message(Message::kOutOfMemory, "");
+  return end;
+}
+
 [[noreturn]] void be_child(int out, const std::function<std::string()>& work,
                            const BridgeLimits& limits, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);  // the parent died before the line above
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXCPU, SIG_DFL);
+  leave_cancelling_to_parent();
   silence_streams();
+  prepare_last_words(out, limits);
   apply_limits(limits);
-  const std::string bytes = guarded(work);
-  const std::uint64_t size = bytes.size();
-  write_all(out, std::string(reinterpret_cast<const char*>(&size), sizeof size));
-  write_all(out, bytes);
+  internal::set_progress_sink([out](double fraction, std::string_view step) {
+    ByteWriter message;
+    message(Message::kProgress, fraction, std::string(step));
+    send(out, message.take());
+  });
+  send(out, guarded(work));
   // No exit handlers and no flushing: buffered output belongs to the parent.
   _exit(0);
 }
@@ -193,11 +282,28 @@ class Child {
   int in_ = -1;
 };
 
-bool complete(const std::string& bytes) {
+// Takes the first whole message off `bytes`; false when there is none yet.
+bool take_message(std::string& bytes, std::string& message) {
   std::uint64_t size = 0;
   if (bytes.size() < sizeof size) return false;
   std::memcpy(&size, bytes.data(), sizeof size);
-  return bytes.size() - sizeof size >= size;
+  if (bytes.size() - sizeof size < size) return false;
+  message = bytes.substr(sizeof size, size);
+  bytes.erase(0, sizeof size + size);
+  return true;
+}
+
+// Passes progress on; true when `message` is the last word of the child instead.
+bool is_last_word(const std::string& message, const Watch& watch) {
+  ByteReader in(message);
+  auto kind = Message::kError;
+  in(kind);
+  if (kind != Message::kProgress) return true;
+  double fraction = 0.0;
+  std::string step;
+  in(fraction, step);
+  if (watch.progress) watch.progress(fraction, step);
+  return false;
 }
 
 std::string number(double value) {
@@ -209,7 +315,7 @@ std::string number(double value) {
 ChildResult out_of_memory(const BridgeLimits& limits) {
   ChildResult result;
   result.end = ChildEnd::kOutOfMemory;
-  result.reason = "needs more than the " + number(limits.megabytes) + " MB of memory allowed";
+  result.reason = "needs more memory than the " + number(limits.megabytes) + " MB allowed";
   return result;
 }
 
@@ -228,8 +334,15 @@ ChildResult died(int signal, const std::string& how) {
   return result;
 }
 
+ChildResult cancelled() {
+  ChildResult result;
+  result.end = ChildEnd::kCancelled;
+  result.reason = "cancelled";
+  return result;
+}
+
 ChildResult interpret(std::string bytes, const BridgeLimits& limits) {
-  ByteReader in(bytes.substr(sizeof(std::uint64_t)));
+  ByteReader in(std::move(bytes));
   auto kind = Message::kError;
   std::string a, b, c;
   in(kind, a, b, c);
@@ -249,32 +362,36 @@ ChildResult interpret(std::string bytes, const BridgeLimits& limits) {
     case Message::kSignal:
       return died(SIGSEGV, a);
     case Message::kError:
-      result.reason = std::move(a);
-      return result;
+    case Message::kProgress:  // is no last word
+      break;
   }
+  result.reason = std::move(a);
   return result;
 }
 
 }  // namespace
 
 ChildResult run_child(const std::function<std::string()>& work, const BridgeLimits& limits,
-                      const CancelToken& cancel) {
+                      const Watch& watch) {
   ISOCHOR_REQUIRE(limits.seconds > 0.0 && limits.megabytes > 0.0, limits.seconds, limits.megabytes);
+  if (watch.cancel.cancelled()) return cancelled();
   const auto start = Clock::now();
   const double elapsed_limit = kElapsedFactor * limits.seconds + kElapsedExtra;
   Child child(work, limits);
-  std::string bytes;
-  while (child.receive(bytes, kPollMilliseconds) && !complete(bytes)) {
-    if (cancel.cancelled()) {
-      ChildResult result;
-      result.end = ChildEnd::kCancelled;
-      result.reason = "cancelled";
-      return result;
+  std::string bytes, message;
+  try {
+    for (bool open = true; open;) {
+      open = child.receive(bytes, kPollMilliseconds);
+      while (take_message(bytes, message)) {
+        if (is_last_word(message, watch)) return interpret(std::move(message), limits);
+      }
+      if (watch.cancel.cancelled()) return cancelled();
+      const std::chrono::duration<double> elapsed = Clock::now() - start;
+      if (elapsed.count() > elapsed_limit) return timed_out(limits);
     }
-    const std::chrono::duration<double> elapsed = Clock::now() - start;
-    if (elapsed.count() > elapsed_limit) return timed_out(limits);
+  } catch (const internal::BytesError&) {
+    return died(0, "what it said makes no sense");
   }
-  if (complete(bytes)) return interpret(std::move(bytes), limits);
 
   double seconds = 0.0;
   const int status = child.reap(&seconds);
@@ -288,9 +405,21 @@ ChildResult run_child(const std::function<std::string()>& work, const BridgeLimi
 }
 
 std::string run_in_child(const std::string& file, const std::function<std::string()>& work,
-                         const BridgeLimits& limits, const CancelToken& cancel) {
-  auto result = run_child(work, limits, cancel);
-  if (result.end == ChildEnd::kFinished) return std::move(result.bytes);
+                         const BridgeLimits& limits, const Watch& watch) {
+  auto result = run_child(work, limits, watch);
+  switch (result.end) {
+    case ChildEnd::kFinished:
+      return std::move(result.bytes);
+    case ChildEnd::kCancelled:
+      throw CancelledError();
+    case ChildEnd::kTimedOut:
+      throw LimitError(LimitError::Limit::kTime, file, result.reason);
+    case ChildEnd::kOutOfMemory:
+      throw LimitError(LimitError::Limit::kMemory, file, result.reason);
+    case ChildEnd::kDied:
+    case ChildEnd::kFailed:
+      break;
+  }
   throw InputError(result.file.empty() ? file : result.file, result.entity, result.reason);
 }
 

@@ -8,13 +8,15 @@
 //  (1) the parent survives whatever the child does, and always learns how it ended;
 //  (2) no child outlives the call, and no descriptor or zombie is left behind;
 //  (3) an InputError thrown by the work arrives here as the same InputError;
-//  (4) the child prints nothing: its standard streams lead nowhere.
+//  (4) the child prints nothing: its standard streams lead nowhere;
+//  (5) progress arrives in order and never goes back.
 // The work must not wait for other threads of this process: they do not exist in the child.
 #pragma once
 
 #include <functional>
 #include <string>
 
+#include "isochor/base/error.h"
 #include "isochor/base/progress.h"
 #include "isochor/step/bytes.h"
 #include "isochor/step/solid_model.h"
@@ -40,20 +42,27 @@ struct ChildResult {
 
 // Runs `work` in a child and waits. Elapsed time is limited too, to a multiple of the processor
 // time, because a child may wait for ever. Address space is not limited under sanitizers, which
-// reserve terabytes. Throws std::system_error when no process can be started.
+// reserve terabytes. The work tells its progress by child_progress.h. Throws std::system_error when
+// no process can be started.
 ChildResult run_child(const std::function<std::string()>& work, const BridgeLimits& limits = {},
-                      const CancelToken& cancel = {});
+                      const Watch& watch = {});
 
-// The same for callers that can use only a result. Throws InputError about `file` otherwise.
+// The same for callers that can use only a result. Throws CancelledError, LimitError, or another
+// InputError about `file` otherwise.
 std::string run_in_child(const std::string& file, const std::function<std::string()>& work,
-                         const BridgeLimits& limits = {}, const CancelToken& cancel = {});
+                         const BridgeLimits& limits = {}, const Watch& watch = {});
 
 // A typed result: T must be known to bytes.h.
 template <typename T>
 T call_in_child(const std::string& file, const std::function<T()>& work,
-                const BridgeLimits& limits = {}, const CancelToken& cancel = {}) {
-  return internal::from_bytes<T>(run_in_child(
-      file, [&work] { return internal::to_bytes(work()); }, limits, cancel));
+                const BridgeLimits& limits = {}, const Watch& watch = {}) {
+  std::string bytes = run_in_child(
+      file, [&work] { return internal::to_bytes(work()); }, limits, watch);
+  try {
+    return internal::from_bytes<T>(std::move(bytes));
+  } catch (const internal::BytesError& e) {
+    throw InputError(file, "", e.what());
+  }
 }
 
 }  // namespace isochor

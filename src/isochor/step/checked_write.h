@@ -18,6 +18,7 @@ struct WriteJob {
   std::vector<int> convert;          // faces to turn into B-spline before they are edited
   std::string output;
   BridgeLimits limits;
+  Watch watch;
   bool must_be_valid = true;  // false: an invalid input may be written as it is
 };
 

@@ -7,24 +7,27 @@
 namespace isochor {
 
 WriteReport convert_file(const std::string& input, const std::string& output,
-                         const BridgeLimits& limits) {
+                         const BridgeLimits& limits, const Watch& watch) {
   internal::WriteJob job;
   job.input = input;
   job.source = [input] { return internal::load_document(input); };
   job.output = output;
   job.limits = limits;
+  job.watch = watch;
   job.must_be_valid = false;
   return internal::write_checked(job);
 }
 
 WriteReport write_patch_model(const PatchModel& model, const std::string& name,
-                              const std::string& output, const BridgeLimits& limits) {
+                              const std::string& output, const BridgeLimits& limits,
+                              const Watch& watch) {
   validate(model);
   internal::WriteJob job;
   job.input = name;
   job.source = [&] { return internal::patch_document(model, name); };
   job.output = output;
   job.limits = limits;
+  job.watch = watch;
   job.must_be_valid = false;
   return internal::write_checked(job);
 }

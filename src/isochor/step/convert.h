@@ -17,13 +17,14 @@ namespace isochor {
 // is converted as it is. Throws InputError when the input cannot be read or the output cannot be
 // created.
 WriteReport convert_file(const std::string& input, const std::string& output,
-                         const BridgeLimits& limits = {});
+                         const BridgeLimits& limits = {}, const Watch& watch = {});
 
 // Writes patches as faces, sewn where their sides coincide; a closed result is a solid. Names of
 // patches become names of faces. `name` stands for the model in errors. Throws InputError naming
 // the patch that is no valid face, or the unit that CAD formats do not know.
 WriteReport write_patch_model(const PatchModel& model, const std::string& name,
-                              const std::string& output, const BridgeLimits& limits = {});
+                              const std::string& output, const BridgeLimits& limits = {},
+                              const Watch& watch = {});
 
 // The patches of a solid as a model of its own, for `.isochor.json`: points, patches and ties,
 // without what is known from the file. Throws InputError naming a face that is trimmed or not a

@@ -12,6 +12,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/step/brep_joins.h"
+#include "isochor/step/child_progress.h"
 #include "isochor/step/conversion.h"
 #include "isochor/step/edge_measures.h"
 #include "isochor/step/flux.h"
@@ -77,6 +78,7 @@ void integrate(const BrepTable& table, const Document& document, SolidModel& mod
   std::vector<FaceIntegrals> integrals;
   for (size_t f = 0; f < table.faces.size(); ++f) {
     const FaceRecord& face = table.faces[f];
+    tell_progress(static_cast<double>(f) / static_cast<double>(table.faces.size()), "measuring");
     integrals.push_back(face.surface.geometry.IsNull()
                             ? FaceIntegrals{}
                             : integrate_face(face.surface.geometry, face.loops, face.trim.kind,
@@ -121,13 +123,16 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   model.unit = document.unit.name;
   model.schema = document.schema;
   model.notices = document.notices;
+  tell_progress(0.0, "checking");
   model.facts = shape_facts(document, false);  // integrals follow, face by face
   BrepTable table = brep_table(document.shape, document.faces, part_names(document));
   convert(table, options.convert, document.path);
+  tell_progress(0.3, "looking at edges");
   for (const EdgeRecord& edge : table.edges) model.edges.push_back(measure_edge(table, edge));
   model.patches = patch_model(table, model.edges);
   model.patches.unit = model.unit;
   const auto aliases = face_aliases(document);
+  tell_progress(0.5, "measuring");
   for (int f = 0; f < document.face_count(); ++f) {
     model.faces.push_back(face_facts(table, f, document));
     FaceFacts& facts = model.faces.back();
@@ -137,7 +142,10 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
     patch.name = facts.name;
     patch.aliases = facts.aliases;
   }
-  integrate(table, document, model);
+  {
+    const ProgressPart part(0.5, 1.0);
+    integrate(table, document, model);
+  }
   if (options.moments && model.facts.closed) model.moments = shape_moments(document.shape);
   if (!options.section.empty() && model.facts.closed) {
     const auto& plane = options.section;

@@ -22,6 +22,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
+#include "isochor/step/occt_progress.h"
 #include "isochor/step/step_unit.h"
 
 namespace isochor::internal {
@@ -29,6 +30,9 @@ namespace {
 
 // Messages of one kind that are listed before the rest are counted.
 constexpr size_t kListedNotices = 20;
+
+// The share of parsing in the time of reading, roughly.
+constexpr double kParsed = 0.25;
 
 std::string file_text(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -71,6 +75,14 @@ LengthUnit iges_unit(const IGESData_IGESModel& model) {
     return name.IsNull() ? LengthUnit() : unit_of_name(name->ToCString());
   }
   return millimetres > 0.0 ? unit_of_millimetres(millimetres) : LengthUnit();
+}
+
+// From entities to shapes, with progress.
+template <typename Reader>
+bool transfer(Reader& reader, Document& document) {
+  const ProgressPart part(kParsed, 1.0);
+  const Handle(OcctProgress) progress = new OcctProgress("making shapes");
+  return reader.Transfer(document.xde, progress->Start());
 }
 
 void collect(const Interface_CheckIterator& checks, bool fails,
@@ -146,6 +158,7 @@ void read_step(Document& document) {
   reader.SetLayerMode(true);
   reader.SetGDTMode(true);
   reader.SetMatMode(true);
+  tell_progress(0.0, "reading");
   if (parse_step(document, reader.ChangeReader()) != IFSelect_RetDone) {
     throw InputError(document.path, "", "cannot be parsed as STEP (truncated or damaged?)");
   }
@@ -157,7 +170,7 @@ void read_step(Document& document) {
   const int roots = reader.NbRootsForTransfer();
   if (roots == 0) throw InputError(document.path, "", "has no shape (no root to read)");
   if (roots > 1) document.notices.push_back(std::to_string(roots) + " separate roots");
-  if (!reader.Transfer(document.xde)) throw InputError(document.path, "", "has no shape");
+  if (!transfer(reader, document)) throw InputError(document.path, "", "has no shape");
   note_checks(document);
 }
 
@@ -166,6 +179,7 @@ void read_iges(Document& document) {
   reader.SetColorMode(true);
   reader.SetNameMode(true);
   reader.SetLayerMode(true);
+  tell_progress(0.0, "reading");
   if (reader.ReadFile(document.path.c_str()) != IFSelect_RetDone) {
     throw InputError(document.path, "", "cannot be parsed as IGES (truncated or damaged?)");
   }
@@ -178,7 +192,7 @@ void read_iges(Document& document) {
   if (reader.NbRootsForTransfer() == 0) {
     throw InputError(document.path, "", "has no shape (no root to read)");
   }
-  if (!reader.Transfer(document.xde)) throw InputError(document.path, "", "has no shape");
+  if (!transfer(reader, document)) throw InputError(document.path, "", "has no shape");
   note_checks(document);
 }
 

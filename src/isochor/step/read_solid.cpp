@@ -1,15 +1,31 @@
 #include "isochor/step/bridge.h"
+#include "isochor/step/child_progress.h"
 #include "isochor/step/document.h"
 #include "isochor/step/document_model.h"
 #include "isochor/step/model_bytes.h"
 #include "isochor/step/solid_model.h"
 
 namespace isochor {
+namespace {
+
+// The share of reading in the time, roughly; the rest is checking and measuring.
+constexpr double kRead = 0.4;
+
+SolidModel read_and_measure(const std::string& path, const ReadOptions& options) {
+  internal::Document document;
+  {
+    const internal::ProgressPart part(0.0, kRead);
+    document = internal::load_document(path);
+  }
+  const internal::ProgressPart part(kRead, 1.0);
+  return internal::document_model(document, options);
+}
+
+}  // namespace
 
 SolidModel read_solid(const std::string& path, const ReadOptions& options) {
   return call_in_child<SolidModel>(
-      path, [&] { return internal::document_model(internal::load_document(path), options); },
-      options.limits);
+      path, [&] { return read_and_measure(path, options); }, options.limits, options.watch);
 }
 
 }  // namespace isochor

@@ -23,7 +23,7 @@ void transfer(Io& io, SolidMesh& f) {
 SolidMesh mesh_solid(const std::string& path, const SolidMeshOptions& options) {
   return call_in_child<SolidMesh>(
       path, [&] { return internal::document_mesh(internal::load_document(path), options); },
-      options.limits);
+      options.limits, options.watch);
 }
 
 FaceMesh on_surface(const FaceMesh& mesh, const Surface& surface, bool reversed) {

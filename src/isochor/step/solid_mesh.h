@@ -39,6 +39,7 @@ struct SolidMeshOptions {
   double angle_rad = 0.25;     // between neighbouring normals
   double longest_edge = 0.02;  // of triangles on B-spline faces, relative to the diagonal
   BridgeLimits limits;
+  Watch watch;
 };
 
 // Reads and meshes in a child process. Throws InputError like read_solid.

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/base/progress.h"
 #include "isochor/bspline/patch_model.h"
 #include "isochor/volume/moments.h"
 #include "isochor/volume/section.h"
@@ -95,9 +96,11 @@ struct ReadOptions {
   bool moments = false;         // also the moment integrals, which cost several times the volume
   std::vector<double> section;  // also the section by this plane, NX, NY, NZ, H; or empty
   BridgeLimits limits;
+  Watch watch;
 };
 
-// Reads a file. Throws InputError (missing, unreadable, no shape, reader died or timed out).
+// Reads a file. Throws InputError (missing, unreadable, no shape, reader died), LimitError and
+// CancelledError.
 SolidModel read_solid(const std::string& path, const ReadOptions& options = {});
 
 // New geometry for one face.

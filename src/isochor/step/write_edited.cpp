@@ -19,6 +19,7 @@ WriteReport write_edited(const std::string& input, const ReadOptions& options,
   job.convert = options.convert;
   job.output = output;
   job.limits = options.limits;
+  job.watch = options.watch;
   return internal::write_checked(job);
 }
 
