@@ -58,6 +58,10 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
                                  .set("analytic_faces_ulps", report.analytic_ulps)
                                  .set("edited_faces", static_cast<long>(faces.size()))
                                  .set("edited_faces_exact", report.edited_exact)
+                                 .set("written_by", report.written_by)
+                                 .set("lines_appended", report.lines_appended)
+                                 .set("lines_repointed", report.lines_repointed)
+                                 .set("not_line_by_line", report.not_line_by_line)
                                  .set("notices", report.notices));
   result.lines.push_back(
       format("check: %s, largest edge gap %.3g (before %.3g), largest tolerance %.3g (before %.3g)",
@@ -65,6 +69,14 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
              report.before.max_edge_gap, report.reread.max_tolerance, report.before.max_tolerance));
   result.lines.push_back(format("untouched B-spline faces bit-identical after re-reading: %d of %d",
                                 report.faces_identical, report.faces_bspline_untouched));
+  if (report.not_line_by_line.empty() && report.lines_appended + report.lines_repointed > 0) {
+    result.lines.push_back(
+        format("written line by line: %d lines appended, references changed in %d, all others kept",
+               report.lines_appended, report.lines_repointed));
+  } else if (!report.not_line_by_line.empty()) {
+    result.lines.push_back("written anew by OpenCASCADE, not line by line: " +
+                           report.not_line_by_line);
+  }
   return result;
 }
 

@@ -72,11 +72,26 @@ TEST(Convert, UnitsThatCannotBeWrittenAreRefused) {
   const size_t at = text.find("2.5399999999999999E+01");
   ASSERT_NE(at, std::string::npos);
   folder.write("odd.step", text.replace(at, 22, "7.5E+00"));
-  const auto step = convert_file(folder.file("odd.step"), folder.file("out.step"));
-  EXPECT_THAT(step.refusal, HasSubstr("length unit of 7.5 mm"));
+  const auto iges = convert_file(folder.file("odd.step"), folder.file("out.igs"));
+  EXPECT_THAT(iges.refusal, HasSubstr("length unit of 7.5 mm"));
   const auto brep = convert_file(folder.file("odd.step"), folder.file("out.brep"));
   EXPECT_TRUE(brep.written) << brep.refusal;
   EXPECT_EQ(brep.faces_identical, 6);
+}
+
+TEST(Convert, StepToStepCopiesEveryByte) {
+  const TempFolder folder;
+  auto cube = shapes::document_of(shapes::bicubic_cube(), "foot");
+  write_document(cube, folder.file("in.step"));
+  const auto text_of = [&](const std::string& name) {
+    std::ifstream in(folder.file(name), std::ios::binary);
+    return std::string{std::istreambuf_iterator<char>(in), {}};
+  };
+  const auto report = convert_file(folder.file("in.step"), folder.file("out.step"));
+  ASSERT_TRUE(report.written) << report.refusal;
+  EXPECT_EQ(report.written_by, "line by line");
+  EXPECT_EQ(report.lines_appended + report.lines_repointed, 0);
+  EXPECT_EQ(text_of("in.step"), text_of("out.step"));
 }
 
 TEST(Convert, ErrorsNameTheFile) {

@@ -206,7 +206,8 @@ TEST(Rebuild, ARebuildWithoutItsCurvesIsObjectedTo) {
   const auto edits = pull(document, pole_of(document, 0, 0, 2), {0.05, 0.02, -0.03});
   internal::RebuildPlan plan;
   for (const auto& edit : edits) {
-    plan.surfaces.push_back({document.face(edit.face), internal::to_occt(edit.surface)});
+    plan.surfaces.push_back({document.face(edit.face), internal::to_occt(edit.surface), "", false,
+                             edit.surface, edit.surface});
   }
   const TopoDS_Shape bad = internal::rebuild_part(document.shape, plan);
   EXPECT_NE(internal::objection_to_rebuilt(before, shape_facts(bad)), "");

@@ -46,6 +46,9 @@ void expect_written(const std::string& input, const std::string& output, int i, 
   ASSERT_EQ(edits.size(), faces);
   const WriteReport report = write_edited(input, {}, edits, output);
   ASSERT_TRUE(report.written) << report.refusal;
+  if (internal::format_of(input) == internal::FileFormat::kStep) {
+    EXPECT_EQ(report.written_by, "line by line") << report.not_line_by_line;
+  }
   EXPECT_TRUE(report.reread.valid);
   EXPECT_TRUE(report.reread.closed);
   EXPECT_LE(report.reread.max_tolerance, report.before.max_tolerance);

@@ -1,5 +1,7 @@
 #include "isochor/step/checked_write.h"
 
+#include <fstream>
+
 #include "isochor/base/error.h"
 #include "isochor/step/bridge.h"
 #include "isochor/step/checks.h"
@@ -10,11 +12,16 @@
 #include "isochor/step/output_file.h"
 #include "isochor/step/rebuild.h"
 #include "isochor/step/shape_facts.h"
+#include "isochor/step/surgical.h"
+#include "isochor/step/surgical_plan.h"
 
 namespace isochor::internal {
 namespace {
 
-// The share of the first attempt in the progress shown; the second is rarely needed.
+constexpr const char* kLineByLine = "line by line";
+constexpr const char* kOpenCascade = "OpenCASCADE";
+
+// The share of a first attempt in the progress shown; others are rarely needed.
 constexpr double kFirstAttempt = 0.8;
 
 // What the output cannot carry, in words.
@@ -39,39 +46,81 @@ Document source_of(const WriteJob& job, double share) {
   return job.source();
 }
 
+// One way to the output.
+struct Way {
+  bool line_by_line = false;
+  WriteSettings settings;  // of OpenCASCADE's writer
+};
+
+// The rebuilt shape, checked before anything is written. A refusal is final: no way helps.
+std::vector<RebuildPlan> rebuild_and_check(const WriteJob& job, Document& document,
+                                           WriteReport& report) {
+  std::vector<RebuildPlan> plans;
+  report.rebuilt = report.before;
+  if (job.must_be_valid && !report.before.valid) {
+    report.refusal = objection_to_rebuilt(report.before, report.before);
+    return plans;
+  }
+  if (job.edits.empty()) return plans;
+  const TopoDS_Shape old = document.shape;
+  tell_progress(0.5, "changing faces");
+  report.refusal = rebuild(document, job.edits, job.convert, &plans);
+  if (!report.refusal.empty()) return plans;
+  tell_progress(0.6, "checking the result");
+  report.rebuilt = shape_facts(document);
+  report.refusal = objection_to_rebuilt(report.before, report.rebuilt);
+  if (report.refusal.empty()) report.refusal = objection_to_gaps(old, document.shape);
+  return plans;
+}
+
+// Returns why not, in words.
+std::string write_lines(const WriteJob& job, const Document& document,
+                        const std::vector<RebuildPlan>& plans, const std::string& path,
+                        WriteReport& report) {
+  SurgicalText text;
+  try {
+    const Part21File file = load_part21(job.step_text);
+    text = edit_text(file, surgical_edit(document, plans));
+  } catch (const InputError& e) {
+    return (e.entity().empty() ? "" : e.entity() + ": ") + e.reason();
+  }
+  if (!text.refusal.empty()) return text.refusal;
+  std::ofstream out(path, std::ios::binary);
+  if (!out) throw InputError(path, "", "cannot be opened for writing");
+  out << text.text;
+  out.close();
+  if (!out) throw InputError(path, "", "cannot be written (disk full?)");
+  report.written_by = kLineByLine;
+  report.lines_appended = text.lines_appended;
+  report.lines_repointed = text.lines_repointed;
+  report.notices.insert(report.notices.end(), text.notices.begin(), text.notices.end());
+  return "";
+}
+
 // Child 1: everything up to the temporary file.
-WriteReport change_and_write(const WriteJob& job, const std::string& path, WriteSettings settings) {
+WriteReport change_and_write(const WriteJob& job, const std::string& path, Way way) {
   WriteReport report;
   Document document = source_of(job, 0.3);
+  WriteSettings& settings = way.settings;
   if (format_of(path) == FileFormat::kStep) settings.surfaces = changed_by_reader(document);
   for (const auto& edit : job.edits) settings.surfaces.erase(edit.face);
   report.notices = document.notices;
   tell_progress(0.3, "checking what is there");
   report.before = shape_facts(document);
-  const TopoDS_Shape old = document.shape;
-  if (format_of(path) != FileFormat::kBrep && document.unit.occt.empty()) {
+  if (!way.line_by_line && format_of(path) != FileFormat::kBrep && document.unit.occt.empty()) {
     report.refusal = "the length unit of " + document.unit.name +
                      " cannot be written without rounding; BREP keeps the numbers";
     return report;
   }
-  if (job.must_be_valid && !report.before.valid) {
-    report.refusal = objection_to_rebuilt(report.before, report.before);
+  const auto plans = rebuild_and_check(job, document, report);
+  if (!report.refusal.empty()) return report;
+  tell_progress(0.8, "writing");
+  if (way.line_by_line) {
+    report.not_line_by_line = write_lines(job, document, plans, path, report);
     return report;
   }
-  if (!job.edits.empty()) {
-    tell_progress(0.5, "changing faces");
-    report.refusal = rebuild(document, job.edits, job.convert);
-    if (!report.refusal.empty()) return report;
-    tell_progress(0.6, "checking the result");
-    report.rebuilt = shape_facts(document);
-    report.refusal = objection_to_rebuilt(report.before, report.rebuilt);
-    if (report.refusal.empty()) report.refusal = objection_to_gaps(old, document.shape);
-    if (!report.refusal.empty()) return report;
-  } else {
-    report.rebuilt = report.before;
-  }
   note_losses(document, format_of(path), report.notices);
-  tell_progress(0.8, "writing");
+  report.written_by = kOpenCascade;
   write_document(document, path, settings);
   return report;
 }
@@ -105,9 +154,9 @@ WriteReport read_back(const WriteJob& job, const std::string& path, WriteReport 
   return report;
 }
 
-WriteReport attempt(const WriteJob& job, const std::string& path, const WriteSettings& settings,
+WriteReport attempt(const WriteJob& job, const std::string& path, const Way& way,
                     const Watch& watch) {
-  const std::function<WriteReport()> first = [&] { return change_and_write(job, path, settings); };
+  const std::function<WriteReport()> first = [&] { return change_and_write(job, path, way); };
   WriteReport report;
   try {
     report = call_in_child(job.input, first, job.limits, watch.part(0.0, 0.6));
@@ -116,7 +165,7 @@ WriteReport attempt(const WriteJob& job, const std::string& path, const WriteSet
     if (e.file() == path) throw InputError(job.output, e.entity(), e.reason());
     throw;
   }
-  if (!report.refusal.empty()) return report;
+  if (!report.refusal.empty() || !report.not_line_by_line.empty()) return report;
   const std::function<WriteReport()> second = [&] { return read_back(job, path, report); };
   try {
     return call_in_child(job.output, second, job.limits, watch.part(0.6, 1.0));
@@ -128,22 +177,43 @@ WriteReport attempt(const WriteJob& job, const std::string& path, const WriteSet
   }
 }
 
+// Refusals before writing stand, whatever the way; after it they may be due to the way.
+bool was_written(const WriteReport& report) { return !report.written_by.empty(); }
+
+WriteReport by_writer(const WriteJob& job, const std::string& path, const Watch& watch) {
+  WriteReport report = attempt(job, path, {}, watch.part(0.0, kFirstAttempt));
+  if (report.refusal.empty() || !was_written(report) || format_of(path) != FileFormat::kStep) {
+    return report;
+  }
+  Way plain;
+  plain.settings.parameter_curves = false;
+  WriteReport second = attempt(job, path, plain, watch.part(kFirstAttempt, 1.0));
+  if (!second.refusal.empty()) return report;
+  second.notices.push_back("written without parameter curves: with them, " + report.refusal);
+  return second;
+}
+
+// Empty `not_line_by_line`: done, or refused whatever the way.
+WriteReport by_lines(const WriteJob& job, const std::string& path, const Watch& watch) {
+  Way way;
+  way.line_by_line = true;
+  WriteReport report = attempt(job, path, way, watch);
+  if (!report.refusal.empty() && was_written(report)) report.not_line_by_line = report.refusal;
+  return report;
+}
+
 }  // namespace
 
 WriteReport write_checked(const WriteJob& job) {
-  const FileFormat format = format_of(job.output);
   OutputFile file(job.output);
-  WriteReport report = attempt(job, file.temporary(), {}, job.watch.part(0.0, kFirstAttempt));
-  // Refusals before writing leave no facts of the file; others may be due to the parameter curves.
-  const bool was_written = report.refusal.empty() || report.reread.diagonal > 0.0;
-  if (!report.refusal.empty() && was_written && format == FileFormat::kStep) {
-    WriteSettings plain;
-    plain.parameter_curves = false;
-    WriteReport second = attempt(job, file.temporary(), plain, job.watch.part(kFirstAttempt, 1.0));
-    if (second.refusal.empty()) {
-      second.notices.push_back("written without parameter curves: with them, " + report.refusal);
-      report = std::move(second);
-    }
+  WriteReport report;
+  const bool lines = !job.step_text.empty() && format_of(job.output) == FileFormat::kStep;
+  if (lines) report = by_lines(job, file.temporary(), job.watch.part(0.0, kFirstAttempt));
+  if (!lines || !report.not_line_by_line.empty()) {
+    const std::string reason = report.not_line_by_line;
+    report = by_writer(job, file.temporary(), job.watch.part(lines ? kFirstAttempt : 0.0, 1.0));
+    report.not_line_by_line = reason;
+    if (lines) report.notices.push_back("written anew by OpenCASCADE, not line by line: " + reason);
   }
   if (report.refusal.empty()) {
     file.commit();

@@ -17,11 +17,16 @@ struct WriteJob {
   std::vector<EditedFace> edits;     // may be empty
   std::vector<int> convert;          // faces to turn into B-spline before they are edited
   std::string output;
+  // The STEP file that `source` reads, when its own lines may be edited; else empty.
+  std::string step_text;
   BridgeLimits limits;
   Watch watch;
   bool must_be_valid = true;  // false: an invalid input may be written as it is
 };
 
+// STEP to STEP goes line by line (see surgical.h). Where that cannot be done, or what is read back
+// is not what was meant, OpenCASCADE's writer is tried: with parameter curves, then without. The
+// report says which way was taken, and why not the ones before.
 // Throws InputError when the input cannot be read or the output cannot be created.
 WriteReport write_checked(const WriteJob& job);
 

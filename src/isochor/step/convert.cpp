@@ -12,6 +12,7 @@ WriteReport convert_file(const std::string& input, const std::string& output,
   job.input = input;
   job.source = [input] { return internal::load_document(input); };
   job.output = output;
+  if (internal::format_of(input) == internal::FileFormat::kStep) job.step_text = input;
   job.limits = limits;
   job.watch = watch;
   job.must_be_valid = false;

@@ -84,7 +84,8 @@ void transfer(Io& io, SolidModel& f) {
 template <typename Io>
 void transfer(Io& io, WriteReport& f) {
   io(f.written, f.refusal, f.before, f.rebuilt, f.reread, f.faces_identical,
-     f.faces_bspline_untouched, f.analytic_ulps, f.edited_exact, f.notices);
+     f.faces_bspline_untouched, f.analytic_ulps, f.edited_exact, f.written_by, f.lines_appended,
+     f.lines_repointed, f.not_line_by_line, f.notices);
 }
 
 namespace internal {

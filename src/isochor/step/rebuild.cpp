@@ -113,12 +113,13 @@ void repoint(const TDF_Label& label, BRepTools_Modifier& modifier,
   }
 }
 
-std::string rebuild_one(Document& document, const Part& part) {
-  const RebuildPlan plan = plan_rebuild(part.shape, part.changes);
+std::string rebuild_one(Document& document, const Part& part, std::vector<RebuildPlan>* plans) {
+  RebuildPlan plan = plan_rebuild(part.shape, part.changes);
   if (!plan.refusal.empty()) return plan.refusal;
   BRepTools_Modifier modifier(part.shape, new PoleModification(plan));
   if (!modifier.IsDone()) return "the shape could not be rebuilt";
   const TopoDS_Shape changed = modifier.ModifiedShape(part.shape);
+  if (plans != nullptr) plans->push_back(std::move(plan));
   if (part.label.IsNull()) {
     document.shape = changed;
     return "";
@@ -159,14 +160,14 @@ TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan) {
 }
 
 std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
-                    const std::vector<int>& convert) {
+                    const std::vector<int>& convert, std::vector<RebuildPlan>* plans) {
   std::map<int, Surface> converted;
   std::string refusal = convert_all(document, convert, converted);
   if (!refusal.empty()) return refusal;
   std::vector<Part> parts = parts_of(document);
   refusal = distribute(document, faces, converted, parts);
   for (const auto& part : parts) {
-    if (refusal.empty() && !part.changes.empty()) refusal = rebuild_one(document, part);
+    if (refusal.empty() && !part.changes.empty()) refusal = rebuild_one(document, part, plans);
   }
   if (!refusal.empty()) return refusal;
   if (!document.xde.IsNull()) {

@@ -18,9 +18,10 @@ namespace isochor::internal {
 
 // Changes the document; `convert` as in ReadOptions. Returns why it cannot be done, in words, or
 // nothing; then the document may be half changed and must be dropped. Throws PreconditionError when
-// a face number is out of range.
+// a face number is out of range. `plans`, when given, receives what was done to each part.
 [[nodiscard]] std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
-                                  const std::vector<int>& convert = {});
+                                  const std::vector<int>& convert = {},
+                                  std::vector<RebuildPlan>* plans = nullptr);
 
 // `surface`, given in the document's coordinates, in those of the face's own surface. Poles that
 // have not moved get the old pole itself, because transforming there and back would round.

@@ -52,7 +52,8 @@ class Planner {
     const Surface before = change.before ? *change.before : from_occt(*spline);
     try {
       const Displacement displacement(change.face, before, change.surface);
-      plan_.surfaces.push_back({change.face, to_occt(change.surface)});
+      plan_.surfaces.push_back({change.face, to_occt(change.surface), change.handle,
+                                spline.IsNull(), before, change.surface});
       for (TopExp_Explorer it(change.face, TopAbs_EDGE); it.More(); it.Next()) {
         add_edge(change, displacement, TopoDS::Edge(it.Current()), location);
       }

@@ -35,6 +35,9 @@ struct FaceChange {
 struct NewSurface {
   TopoDS_Face face;
   Handle(Geom_Surface) surface;
+  std::string handle;
+  bool converted = false;  // it was no B-spline
+  Surface before, after;   // in the coordinates of the face's own surface
 };
 struct NewCurve {
   TopoDS_Shape edge;

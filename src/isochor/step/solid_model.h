@@ -121,6 +121,11 @@ struct WriteReport {
   int faces_bspline_untouched = 0;
   double analytic_ulps = 0.0;  // largest deviation of an analytic face, in units in the last place
   int edited_exact = 0;        // edited faces that came back bit for bit
+  // "line by line": the lines of the input, of which `lines_repointed` were changed, and
+  // `lines_appended` new ones; or "OpenCASCADE": everything written anew.
+  std::string written_by;
+  int lines_appended = 0, lines_repointed = 0;
+  std::string not_line_by_line;  // STEP to STEP only: why it was written anew; else empty
   std::vector<std::string> notices;
 };
 

@@ -18,6 +18,7 @@ WriteReport write_edited(const std::string& input, const ReadOptions& options,
   job.edits = faces;
   job.convert = options.convert;
   job.output = output;
+  if (internal::format_of(input) == internal::FileFormat::kStep) job.step_text = input;
   job.limits = options.limits;
   job.watch = options.watch;
   return internal::write_checked(job);
