@@ -1,6 +1,7 @@
 // Places, holds, refinement and sinks: what an edit means on a model, and what it says when it
 // means nothing.
 #include "isochor/edit/prepared_edit.h"
+#include "isochor/edit/edit_refinement.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -199,64 +200,6 @@ TEST(PreparedEdit, HoldsThatMeanNothingAreNamed) {
               HasSubstr("hold: one plane of symmetry per edit is supported, 2 were given"));
   edit.holds = {testing::hold_symmetry(0)};
   EXPECT_THAT(refusal_of(model, edit), HasSubstr("hold symmetry \"x\""));
-}
-
-TEST(PreparedEdit, RefineReachesEveryPatchTheEditNames) {
-  const PatchModel model = small_cube();
-  const auto spans = [&](const Edit& edit, size_t q) {
-    const PatchModel refined = refined_for(model, edit);
-    return std::make_pair(refined.patches[q].u_knots.spans().size(),
-                          refined.patches[q].v_knots.spans().size());
-  };
-  const auto fine = std::make_pair<size_t, size_t>(8, 8);
-  const auto coarse = std::make_pair<size_t, size_t>(4, 4);
-  Edit edit;
-  edit.refine.kind = Refine::Kind::kSpans;
-  edit.refine.spans = {8, 8};
-  EXPECT_EQ(spans(edit, 0), coarse) << "nothing is named";
-  edit.moves = {move_by("top", {0.5, 0.5}, Vec3::UnitZ())};
-  EXPECT_EQ(spans(edit, 0), fine);
-  EXPECT_EQ(spans(edit, 1), fine) << "the chain of joins reaches the bottom";
-  edit.moves.clear();
-  edit.extent = testing::poles("right", {{1, 1}});
-  EXPECT_EQ(spans(edit, 2), fine);
-  edit.extent = testing::faces({"right"});
-  EXPECT_EQ(spans(edit, 2), fine);
-  edit.extent = whole_extent();
-  EXPECT_EQ(spans(edit, 5), fine);
-  edit.extent = Extent{};
-  edit.sink.kind = Sink::Kind::kOtherExtent;
-  edit.sink.extent = testing::faces({"left"});
-  EXPECT_EQ(spans(edit, 3), fine);
-  edit.refine.kind = Refine::Kind::kNone;
-  EXPECT_EQ(spans(edit, 3), coarse);
-}
-
-TEST(PreparedEdit, RefineByLengthBoundsTheSpans) {
-  const PatchModel model = testing::bent_cube(52);
-  Edit edit = edit_of(move_by("top", {0.5, 0.5}, Vec3::UnitZ()), ball(0.3));
-  edit.refine.kind = Refine::Kind::kLength;
-  edit.refine.length = 0.08;
-  const PatchModel refined = refined_for(model, edit);
-  const Surface top = refined.surface(0);
-  const auto& breaks = refined.patches[0].u_knots.breaks();
-  for (size_t k = 0; k + 1 < breaks.size(); ++k) {
-    for (double v : {0.0, 0.3, 0.8, 1.0}) {
-      double length = 0.0;  // of the iso curve over one span
-      Vec3 last = top.point(breaks[k], v);
-      for (int s = 1; s <= 16; ++s) {
-        const Vec3 next = top.point(breaks[k] + (breaks[k + 1] - breaks[k]) * s / 16.0, v);
-        length += (next - last).norm();
-        last = next;
-      }
-      EXPECT_LE(length, 0.08 * 1.05);
-    }
-  }
-  for (double u : {0.1, 0.5, 0.93}) {
-    EXPECT_LE((top.point(u, 0.4) - model.surface(0).point(u, 0.4)).norm(), 1e-14);
-  }
-  edit.refine.length = 1e-12;
-  EXPECT_THROW(refined_for(model, edit), InputError);
 }
 
 TEST(PreparedEdit, ASinkThatIsTheExtentIsTheDefault) {

@@ -77,12 +77,20 @@ TEST(EditsJson, FormatThenParseIsTheSame) {
         R"("extent": "all", "scale": {"knots": {"a": [[0.1], [0.2, 0.3]]}})",
         R"("extent": {"points": [3, 1]}, "refine": {"length": 0.1}, "volume": {"change": -2e-3})",
         R"("hold": [{"plane": {"point": [0, 0, 1], "normal": [1, 0, 0]}}], "continuity": "G1")",
-        R"("hold": [{"near": [0, 0, 1], "normal": true}])",
+        R"("hold": [{"near": [0, 0, 1], "normal": true}])", R"("refine": "auto")",
         R"("continuity": {"edges": [{"edge": ["a", "b"], "keep": "measured"}]})",
         R"("move": [{"near": [0.1, 0.2, 0.3], "to": [1, 2, 3]}], "method": "taylor")"}) {
     const std::string once = format_edits(parse_edits(script_of(keys), "e.json"));
     EXPECT_EQ(once, format_edits(parse_edits(once, "e.json"))) << keys;
   }
+}
+
+TEST(EditsJson, RefineIsAWordOrANumber) {
+  const EditScript script = parse_edits(script_of(R"("refine": "auto")"), "e.json");
+  EXPECT_EQ(script.edits[0].refine.kind, Refine::Kind::kAuto);
+  EXPECT_THAT(format_edits(script), HasSubstr("\"refine\": \"auto\""));
+  EXPECT_THAT(error_of(script_of(R"("refine": "fine")")),
+              HasSubstr("edits[0].refine: expected \"auto\", found \"fine\""));
 }
 
 TEST(EditsJson, MistakesNameThePlaceAndTheValue) {

@@ -65,7 +65,7 @@ struct Scale {
 
 // Exact knot insertion before the edit.
 struct Refine {
-  enum class Kind { kNone, kSpans, kLength };
+  enum class Kind { kNone, kSpans, kLength, kAuto };  // kAuto: around the moved points
   Kind kind = Kind::kNone;
   std::array<int, 2> spans{};  // at least this many along u and v
   double length = 0.0;         // no span longer than this (length unit)

@@ -9,6 +9,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
+#include "isochor/edit/edit_refinement.h"
 #include "isochor/edit/prepared_edit.h"
 
 namespace isochor {

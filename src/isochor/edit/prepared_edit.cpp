@@ -9,14 +9,11 @@
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
-#include "isochor/bspline/closest_point.h"
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
-#include "isochor/bspline/model_refinement.h"
-#include "isochor/bspline/refinement.h"
-#include "isochor/bspline/trims.h"
 #include "isochor/edit/extent_selection.h"
 #include "isochor/edit/names.h"
+#include "isochor/edit/places.h"
 
 namespace isochor {
 namespace {
@@ -69,109 +66,7 @@ std::vector<DisplacementSpace::EdgeRule> edges_of(const PatchModel& model, const
   return rules;
 }
 
-std::string print(const Uv& uv) {
-  std::ostringstream text;
-  text.precision(6);
-  text << "(" << uv.u << ", " << uv.v << ")";
-  return text.str();
-}
-
-Uv parameters_of(const Patch& patch, const Place& place, const std::string& where) {
-  const KnotVector& u = patch.u_knots;
-  const KnotVector& v = patch.v_knots;
-  Uv uv = place.uv;
-  if (place.normalised) {
-    const bool inside = 0.0 <= uv.u && uv.u <= 1.0 && 0.0 <= uv.v && uv.v <= 1.0;
-    if (!inside) throw InputError("", where, "uv01 " + print(uv) + " is outside [0, 1] x [0, 1]");
-    uv = {u.begin() + uv.u * (u.end() - u.begin()), v.begin() + uv.v * (v.end() - v.begin())};
-    uv = {std::min(uv.u, u.end()), std::min(uv.v, v.end())};
-  } else if (!(u.begin() <= uv.u && uv.u <= u.end() && v.begin() <= uv.v && uv.v <= v.end())) {
-    std::ostringstream text;
-    text << "uv " << print(uv) << " is outside the domain [" << u.begin() << ", " << u.end()
-         << "] x [" << v.begin() << ", " << v.end() << "] of " << label_of(patch);
-    throw InputError("", where, text.str());
-  }
-  if (!inside_trim(patch.trim, uv.u, uv.v)) {
-    throw InputError(
-        "", where,
-        "uv " + print(uv) + " lies in a part of " + label_of(patch) + " that is trimmed away");
-  }
-  return uv;
-}
-
-ClosestPoint nearest_place(const PatchModel& model, const Vec3& near, const std::string& where) {
-  const ClosestPoint found = closest_point(model, near);
-  if (found.patch < 0) throw InputError("", where, "the model has no surface to be near to");
-  return found;
-}
-
-// The patches that an edit's refine applies to: those of its moves and of the extents it names.
-std::set<int> refined_patches(const PatchModel& model, const Edit& edit) {
-  std::set<int> patches;
-  for (const Move& move : edit.moves) {
-    if (move.place.kind == Place::Kind::kNear) {
-      patches.insert(nearest_place(model, move.place.near, "move").patch);
-    } else {
-      patches.insert(find_patch(model, move.place.patch));
-    }
-  }
-  const auto add = [&](const Extent& extent) {
-    if (!extent.patch.empty()) patches.insert(find_patch(model, extent.patch));
-    for (const auto& item : extent.poles) patches.insert(find_patch(model, item.first));
-    for (const std::string& face : extent.faces) patches.insert(find_patch(model, face));
-    if (extent.kind != Extent::Kind::kAll) return;
-    for (size_t q = 0; q < model.patches.size(); ++q) patches.insert(static_cast<int>(q));
-  };
-  add(edit.extent);
-  if (edit.sink.kind == Sink::Kind::kOtherExtent) add(edit.sink.extent);
-  return patches;
-}
-
-// The largest speeds |S_u| and |S_v| over a patch, from several samples in every span.
-std::array<double, 2> largest_speeds(const Surface& surface) {
-  constexpr int kSamples = 3;
-  const auto samples = [](const KnotVector& knots) {
-    std::vector<double> values;
-    for (int span : knots.spans()) {
-      for (int k = 0; k <= kSamples; ++k) {
-        values.push_back(knots[span] + (knots[span + 1] - knots[span]) * k / kSamples);
-      }
-    }
-    return values;
-  };
-  std::array<double, 2> speeds{};
-  for (double u : samples(surface.u_knots())) {
-    for (double v : samples(surface.v_knots())) {
-      const SurfaceDerivatives at = surface.derivatives(u, v, 1);
-      speeds[0] = std::max(speeds[0], at.su.norm());
-      speeds[1] = std::max(speeds[1], at.sv.norm());
-    }
-  }
-  return speeds;
-}
-
 }  // namespace
-
-PatchModel refined_for(const PatchModel& model, const Edit& edit) {
-  if (edit.refine.kind == Refine::Kind::kNone) return model;
-  PatchModel refined = model;
-  for (int q : refined_patches(model, edit)) {
-    const Patch& patch = refined.patches[static_cast<size_t>(q)];
-    KnotVector u = patch.u_knots;
-    KnotVector v = patch.v_knots;
-    if (edit.refine.kind == Refine::Kind::kSpans) {
-      u = refined_to_spans(u, edit.refine.spans[0]);
-      v = refined_to_spans(v, edit.refine.spans[1]);
-    } else {
-      const auto [u_speed, v_speed] = largest_speeds(refined.surface(q));
-      if (u_speed > 0.0) u = refined_to_length(u, edit.refine.length / u_speed);
-      if (v_speed > 0.0) v = refined_to_length(v, edit.refine.length / v_speed);
-    }
-    refined = refine(refined, q, u, v);
-  }
-  derive_locks(refined);
-  return refined;
-}
 
 PreparedEdit::PreparedEdit(PatchModel rest, const Edit& edit)
     : rest_(std::move(rest)),
@@ -193,37 +88,37 @@ PreparedEdit::PreparedEdit(PatchModel rest, const Edit& edit)
 }
 
 ResolvedPlace PreparedEdit::resolve(const Place& place, const std::string& where) const {
+  if (place.kind == Place::Kind::kCoefficient) return resolve_coefficient(place, where);
+  const auto [patch, uv] = surface_place(rest_, place, where);
   ResolvedPlace resolved;
-  if (place.kind == Place::Kind::kNear) {
-    const ClosestPoint found = nearest_place(rest_, place.near, where);
-    resolved.patch = found.patch;
-    resolved.uv = found.uv;
-  } else {
-    resolved.patch = find_patch(rest_, place.patch);
-  }
+  resolved.patch = patch;
+  resolved.uv = uv;
+  resolved.row = space_.surface_row(rest_, patch, uv);
+  resolved.position = rest_.surface(patch).point(uv.u, uv.v);
+  resolved.text = label_of(rest_.patches[static_cast<size_t>(patch)]) + " at uv " + text_of(uv);
+  return resolved;
+}
+
+ResolvedPlace PreparedEdit::resolve_coefficient(const Place& place,
+                                                const std::string& where) const {
+  ResolvedPlace resolved;
+  resolved.patch = find_patch(rest_, place.patch);
+  resolved.coefficient = true;
   const Patch& patch = rest_.patches[static_cast<size_t>(resolved.patch)];
-  if (place.kind == Place::Kind::kCoefficient) {
-    const int nu = space_.u_knots(resolved.patch).size();
-    const int nv = space_.v_knots(resolved.patch).size();
-    if (place.i < 0 || place.j < 0 || place.i >= nu || place.j >= nv) {
-      throw InputError("", where,
-                       "pole [" + std::to_string(place.i) + ", " + std::to_string(place.j) +
-                           "] is outside the grid of " + std::to_string(nu) + " x " +
-                           std::to_string(nv) + " coefficients of the chosen scale");
-    }
-    resolved.coefficient = true;
-    resolved.row = space_.grid_row(resolved.patch, place.i, place.j);
-    const bool finest = patch.u_size() == nu && patch.v_size() == nv;
-    resolved.position = finest ? rest_.points[static_cast<size_t>(patch.point(place.i, place.j))]
-                               : space_.place(resolved.row.coefficient.front());
-    resolved.text = label_of(patch) + " pole [" + std::to_string(place.i) + ", " +
-                    std::to_string(place.j) + "]";
-    return resolved;
+  const int nu = space_.u_knots(resolved.patch).size();
+  const int nv = space_.v_knots(resolved.patch).size();
+  if (place.i < 0 || place.j < 0 || place.i >= nu || place.j >= nv) {
+    throw InputError("", where,
+                     "pole [" + std::to_string(place.i) + ", " + std::to_string(place.j) +
+                         "] is outside the grid of " + std::to_string(nu) + " x " +
+                         std::to_string(nv) + " coefficients of the chosen scale");
   }
-  if (place.kind == Place::Kind::kSurface) resolved.uv = parameters_of(patch, place, where);
-  resolved.row = space_.surface_row(rest_, resolved.patch, resolved.uv);
-  resolved.position = rest_.surface(resolved.patch).point(resolved.uv.u, resolved.uv.v);
-  resolved.text = label_of(patch) + " at uv " + print(resolved.uv);
+  resolved.row = space_.grid_row(resolved.patch, place.i, place.j);
+  const bool finest = patch.u_size() == nu && patch.v_size() == nv;
+  resolved.position = finest ? rest_.points[static_cast<size_t>(patch.point(place.i, place.j))]
+                             : space_.place(resolved.row.coefficient.front());
+  resolved.text =
+      label_of(patch) + " pole [" + std::to_string(place.i) + ", " + std::to_string(place.j) + "]";
   return resolved;
 }
 

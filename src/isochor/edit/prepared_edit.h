@@ -52,6 +52,7 @@ class PreparedEdit {
 
  private:
   ResolvedPlace resolve(const Place& place, const std::string& where) const;
+  ResolvedPlace resolve_coefficient(const Place& place, const std::string& where) const;
   void resolve_holds();
   void lock_edge(const Hold& hold, const std::string& name);
   void hold_normal(const Place& place, const std::string& name);
@@ -73,8 +74,5 @@ class PreparedEdit {
   std::unique_ptr<EditSolver> solver_;
   std::optional<SkinGauge> gauge_;  // from the first solution on
 };
-
-// The model of an edit's `refine`: exact knot insertion in the patches that the edit names.
-PatchModel refined_for(const PatchModel& model, const Edit& edit);
 
 }  // namespace isochor

@@ -8,6 +8,7 @@
 #include "isochor/base/error.h"
 #include "isochor/bspline/trims.h"
 #include "isochor/edit/displacement_space.h"
+#include "isochor/edit/edit_refinement.h"
 #include "isochor/edit/prepared_edit.h"
 
 namespace isochor {

@@ -149,8 +149,13 @@ Scale parse_scale(const JsonValue& value) {
 }
 
 Refine parse_refine(const JsonValue& value) {
-  JsonObject object(value);
   Refine refine;
+  if (value.is_string()) {
+    if (value.text() != "auto") value.fail("expected \"auto\", found " + value.print());
+    refine.kind = Refine::Kind::kAuto;
+    return refine;
+  }
+  JsonObject object(value);
   if (object.has("spans") == object.has("length")) {
     value.fail("expected exactly one of \"spans\" or \"length\"");
   }

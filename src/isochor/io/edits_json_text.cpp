@@ -116,6 +116,7 @@ Json format_edit(const Edit& edit) {
   Json out;
   if (!edit.name.empty()) out["name"] = edit.name;
   out["scale"] = format_scale(edit.scale);
+  if (edit.refine.kind == Refine::Kind::kAuto) out["refine"] = "auto";
   if (edit.refine.kind == Refine::Kind::kSpans) out["refine"] = {{"spans", edit.refine.spans}};
   if (edit.refine.kind == Refine::Kind::kLength) out["refine"] = {{"length", edit.refine.length}};
   out["extent"] = format_extent(edit.extent);
