@@ -207,7 +207,7 @@ void EditSession::State::solve(const std::vector<Vec3>& values) {
         std::string(active->certificate.locked.empty()
                         ? ""
                         : ": " + active->certificate.locked.front().reason) +
-        "; enlarge the extent or refine";
+        "; enlarge the extent, or let \"refine\": \"auto\" insert knots";
     active->certificate.volume.after = total();
     return;
   }
