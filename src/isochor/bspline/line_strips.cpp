@@ -35,6 +35,9 @@ Strip make_strip(const PatchModel& model, int patch, Direction across, double kn
     if (backwards && r == 1) {
       for (Rational& share : shares) share = -share;
     }
+    for (const Rational& share : shares) {
+      strip.rounded[static_cast<size_t>(r)].push_back(share.to_double());
+    }
   }
   return strip;
 }
@@ -105,7 +108,7 @@ Derivatives derivatives_at(const PatchModel& model, const Strip& strip, int j, d
     const auto at = grid_index(patch, strip, strip.first + i, j);
     poles.push_back(model.points[static_cast<size_t>(patch.point(at.first, at.second))]);
     weights.push_back(weight_at(patch, at) * scale);
-    const double share = strip.derivatives[0][static_cast<size_t>(i)].to_double() * weights.back();
+    const double share = strip.rounded[0][static_cast<size_t>(i)] * weights.back();
     sum += share * (poles.back() - poles.front());
     total += share;
   }
@@ -113,7 +116,7 @@ Derivatives derivatives_at(const PatchModel& model, const Strip& strip, int j, d
   Derivatives result;
   for (size_t r = 0; r < 2; ++r) {
     for (size_t i = 0; i < poles.size(); ++i) {
-      const Vec3 term = strip.derivatives[r + 1][i].to_double() * weights[i] * (poles[i] - point);
+      const Vec3 term = strip.rounded[r + 1][i] * weights[i] * (poles[i] - point);
       result.value[r] += term;
       result.size[r] += term.norm();
     }
@@ -133,19 +136,17 @@ double fitted_factor(const std::vector<Vec3>& above, const std::vector<Vec3>& be
 }
 
 // The simplest rational within `noise` of a measured value, a known one first.
-Rational simplest_near(double value, double noise, const std::vector<Rational>& known) {
+Rational simplest_near(double value, double noise, const KnownFactors& known) {
   const Rational low = Rational(value) - Rational(noise);
   const Rational high = Rational(value) + Rational(noise);
-  for (const Rational& factor : known) {
-    if (low <= factor && factor <= high) return factor;
-  }
-  return simplest_between(low, high);
+  const Rational* factor = known.find(low, high);
+  return factor != nullptr ? *factor : simplest_between(low, high);
 }
 
 // A simple rational near a measured value that does not make the residual (relative, in units of
 // `unit` for the value) noticeably worse. The wider the search, the simpler it is.
 template <typename Residual>
-Rational settled(double value, double unit, Residual residual, std::vector<Rational>* known) {
+Rational settled(double value, double unit, Residual residual, KnownFactors* known) {
   const double measured = residual(value);
   Rational found;
   for (double share : {4.0, 1.0, 0.25, 0.0}) {
@@ -153,7 +154,7 @@ Rational settled(double value, double unit, Residual residual, std::vector<Ratio
     found = simplest_near(value, noise, *known);
     if (residual(found.to_double()) <= 1.25 * measured + kFactorNoise) break;
   }
-  if (std::find(known->begin(), known->end(), found) == known->end()) known->push_back(found);
+  known->add(found);
   return found;
 }
 
@@ -179,13 +180,12 @@ class Fit {
   static double boundary_weight(const PatchModel& model, const Strip& strip) {
     double total = 0.0;
     for (int i = 0; i < rows_of(strip); ++i) {
-      total +=
-          strip.derivatives[0][static_cast<size_t>(i)].to_double() * weight(model, strip, i, 0);
+      total += strip.rounded[0][static_cast<size_t>(i)] * weight(model, strip, i, 0);
     }
     return total;
   }
 
-  bool run(SmoothRelation* relation, std::vector<Rational>* known) const {
+  bool run(SmoothRelation* relation, KnownFactors* known) const {
     const std::vector<Vec3> below = values(below_, 0);
     const double raw = fitted_factor(values(above_, 0), below);
     if (!(raw > 0.0) || !std::isfinite(raw)) return false;
@@ -199,7 +199,7 @@ class Fit {
   }
 
  private:
-  bool run_second(SmoothRelation* relation, std::vector<Rational>* known,
+  bool run_second(SmoothRelation* relation, KnownFactors* known,
                   const std::vector<Vec3>& below) const {
     const double lambda = relation->lambda.to_double();
     std::vector<Vec3> rest;
@@ -378,17 +378,41 @@ Line knot_line(const PatchModel& model, int patch, Direction across, double knot
   return line;
 }
 
+const Rational* KnownFactors::find(const Rational& low, const Rational& high) const {
+  // Rounding keeps the order, so what lies outside rounded lies outside.
+  const double least = low.to_double();
+  const double most = high.to_double();
+  for (size_t k = 0; k < factors_.size(); ++k) {
+    if (rounded_[k] < least || rounded_[k] > most) continue;
+    if (low <= factors_[k] && factors_[k] <= high) return &factors_[k];
+  }
+  return nullptr;
+}
+
+void KnownFactors::add(const Rational& factor) {
+  if (find(factor, factor) != nullptr) return;
+  factors_.push_back(factor);
+  rounded_.push_back(factor.to_double());
+}
+
+void KnownFactors::shrink_to(size_t size) {
+  factors_.resize(std::min(size, factors_.size()));
+  rounded_.resize(factors_.size());
+}
+
 bool fit_relation(const PatchModel& model, const Line& line, SmoothRelation* relation,
-                  std::vector<Rational>* known_factors) {
+                  KnownFactors* known_factors) {
   SmoothRelation fitted = *relation;
-  std::vector<Rational> known = *known_factors;
-  const Fit fit(model, line);
-  if (!fit.run(&fitted, &known)) return false;
-  const bool separate = weights_separate(model, line, fitted.order);
-  if (!add_equations(model, line, separate, &fitted)) return false;
-  *relation = std::move(fitted);
-  *known_factors = std::move(known);
-  return true;
+  const size_t known = known_factors->size();
+  const bool fits =
+      Fit(model, line).run(&fitted, known_factors) &&
+      add_equations(model, line, weights_separate(model, line, fitted.order), &fitted);
+  if (fits) {
+    *relation = std::move(fitted);
+  } else {
+    known_factors->shrink_to(known);
+  }
+  return fits;
 }
 
 }  // namespace isochor::internal

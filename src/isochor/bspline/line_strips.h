@@ -17,6 +17,22 @@ struct Strip {
   int first = 0;         // the pole row of derivatives[r][0]
   // [r][i]: share of pole row first + i in the derivative of order r with respect to n.
   std::array<std::vector<Rational>, 3> derivatives;
+  std::array<std::vector<double>, 3> rounded;  // the same
+};
+
+// The factors of a model's relations, each once: simple numbers that occur again and again.
+class KnownFactors {
+ public:
+  // The first one that was added of those in [low, high].
+  const Rational* find(const Rational& low, const Rational& high) const;
+  // Does nothing when `factor` is known.
+  void add(const Rational& factor);
+  size_t size() const { return factors_.size(); }
+  void shrink_to(size_t size);  // forgets those added last
+
+ private:
+  std::vector<Rational> factors_;
+  std::vector<double> rounded_;  // tell most of them apart at little cost
 };
 
 struct Line {
@@ -40,6 +56,6 @@ std::pair<int, int> grid_index(const Patch& patch, const Strip& strip, int row, 
 // `known_factors`: values met before, used again when they lie within the noise; new ones are
 // added. False when no constant factors fit; then neither is changed.
 bool fit_relation(const PatchModel& model, const Line& line, SmoothRelation* relation,
-                  std::vector<Rational>* known_factors);
+                  KnownFactors* known_factors);
 
 }  // namespace isochor::internal

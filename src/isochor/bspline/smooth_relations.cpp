@@ -115,7 +115,7 @@ class RelationFinder {
   const PatchModel& model_;
   double size_;
   PointClasses classes_;
-  std::vector<Rational> factors_;
+  internal::KnownFactors factors_;
   std::vector<SmoothRelation> relations_;
 };
 
