@@ -113,6 +113,39 @@ TEST(WriteEditedShapes, AssembliesKeepTheirLabels) {
   EXPECT_EQ(after.unit.name, "inch");
 }
 
+// A reader makes closed faces periodic, with other poles; what is shown and written is the file's.
+TEST(WriteEditedShapes, ClosedFacesKeepTheFilesOwnPoles) {
+  const TempFolder folder;
+  const auto input = write(shapes::document_of(shapes::barrel(true)), folder, "in.step");
+  const Document document = load_document(input);
+  const auto changed = internal::changed_by_reader(document);
+  ASSERT_EQ(changed.size(), 1u);
+  const auto& [face, stated] = *changed.begin();
+  const SolidModel solid = read_solid(input);
+  const int patch = solid.faces[static_cast<size_t>(face)].patch;
+  ASSERT_GE(patch, 0);
+  EXPECT_EQ(solid.patches.surface(patch).poles(), stated.poles());
+  EXPECT_EQ(solid.patches.surface(patch).u_knots(), stated.u_knots());
+  ASSERT_EQ(solid.patches.joins.size(), 1u) << "the seam";
+  EXPECT_EQ(solid.patches.joins[0].a.patch, solid.patches.joins[0].b.patch);
+  // Both rows of the seam move, inside the caps.
+  std::vector<Vec3> poles = stated.poles();
+  const Side side = solid.patches.joins[0].a.side;
+  const bool along_v = side == Side::kUBegin || side == Side::kUEnd;
+  const int last = along_v ? stated.u_size() - 1 : stated.v_size() - 1;
+  const auto at = [&](int row) { return along_v ? stated.index(row, 2) : stated.index(2, row); };
+  poles[at(0)] += Vec3(0.02, 0.03, 0.01);
+  poles[at(last)] += Vec3(0.02, 0.03, 0.01);
+  const Surface moved(stated.u_knots(), stated.v_knots(), poles, stated.weights());
+  const auto report = write_edited(input, {}, {{face, moved}}, folder.file("out.step"));
+  ASSERT_TRUE(report.written) << report.refusal;
+  EXPECT_EQ(report.written_by, "line by line") << report.not_line_by_line;
+  EXPECT_EQ(report.edited_exact, 1);
+  EXPECT_LE(report.lines_appended, 4) << "two poles of the surface, two of the seam";
+  const Document after = load_document(folder.file("out.step"));
+  EXPECT_EQ(internal::file_surface(after, face)->poles(), poles);
+}
+
 // Everything through the patch model, as the editor does it.
 TEST(WriteEditedShapes, ModelsThatWereReadCanBeWritten) {
   const TempFolder folder;

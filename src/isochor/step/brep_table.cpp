@@ -44,7 +44,7 @@ void refuse_shared(FaceRecord& record, int places, const PartNames& part_names) 
 }  // namespace
 
 BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces,
-                     const PartNames& part_names) {
+                     const PartNames& part_names, const FileSurfaces& stated) {
   BrepTable table;
   table.shape = shape;
   Bnd_Box box;
@@ -58,7 +58,8 @@ BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape
   for (int k = 1; k <= faces.Extent(); ++k) {
     FaceRecord record;
     record.face = TopoDS::Face(faces(k));
-    record.surface = face_surface(record.face);
+    const auto own = stated.find(k - 1);
+    record.surface = face_surface(record.face, own == stated.end() ? nullptr : &own->second);
     record.loops = face_loops(record.face);
     refuse_shared(record, places[record.face.TShape().get()], part_names);
     if (!record.surface.geometry.IsNull()) {

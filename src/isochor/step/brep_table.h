@@ -14,6 +14,7 @@
 #include "isochor/step/document.h"
 #include "isochor/step/face_loops.h"
 #include "isochor/step/face_patches.h"
+#include "isochor/step/file_surface.h"
 #include "isochor/step/solid_model.h"
 #include "isochor/step/trim_region.h"
 
@@ -55,9 +56,10 @@ struct BrepTable {
 };
 
 // `faces`: the document's numbering. Patch numbers are left open. `part_names`: the parts of an
-// assembly by the faces' TShapes, for messages.
+// assembly by the faces' TShapes, for messages. `stated`: surfaces that the reader changed, as the
+// file states them.
 BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape& faces,
-                     const PartNames& part_names = {});
+                     const PartNames& part_names = {}, const FileSurfaces& stated = {});
 
 // Fills the tables' edges from the loops of its faces (part of brep_table; again after loops or
 // surfaces of faces were replaced).

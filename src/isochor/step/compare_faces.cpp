@@ -222,6 +222,7 @@ FaceComparison compare_faces(const Document& before, const Document& after,
                        " to " + std::to_string(after.face_count());
     return result;
   }
+  const FileSurfaces stated = changed_by_reader(before);
   std::map<int, const EditedFace*> edits;
   for (const auto& edit : edited) edits[edit.face] = &edit;
   for (int k = 0; k < before.face_count(); ++k) {
@@ -229,7 +230,7 @@ FaceComparison compare_faces(const Document& before, const Document& after,
     if (edit == edits.end()) {
       comparer.untouched(k);
     } else {
-      comparer.edited(k, local_surface(edit->second->surface, before.face(k)));
+      comparer.edited(k, local_surface(edit->second->surface, before.face(k), k, stated));
     }
   }
   return comparer.take();

@@ -156,7 +156,8 @@ EdgeLine edge_line(const EdgeRecord& record, int number, double deflection, doub
 }  // namespace
 
 SolidMesh document_mesh(const Document& document, const SolidMeshOptions& options) {
-  const BrepTable table = brep_table(document.shape, document.faces);
+  const BrepTable table =
+      brep_table(document.shape, document.faces, {}, changed_by_reader(document));
   const double deflection = options.deflection * table.diagonal;
   BRepTools::Clean(document.shape);
   BRepMesh_IncrementalMesh(document.shape, deflection, Standard_False, options.angle_rad);

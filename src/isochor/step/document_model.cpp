@@ -125,7 +125,8 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   model.notices = document.notices;
   tell_progress(0.0, "checking");
   model.facts = shape_facts(document, false);  // integrals follow, face by face
-  BrepTable table = brep_table(document.shape, document.faces, part_names(document));
+  BrepTable table =
+      brep_table(document.shape, document.faces, part_names(document), changed_by_reader(document));
   convert(table, options.convert, document.path);
   tell_progress(0.3, "looking at edges");
   for (const EdgeRecord& edge : table.edges) model.edges.push_back(measure_edge(table, edge));

@@ -1,6 +1,7 @@
 #include "isochor/step/entity_index.h"
 
 #include <StepData_StepModel.hxx>
+#include <StepGeom_Surface.hxx>
 #include <StepShape_EdgeCurve.hxx>
 #include <StepShape_FaceSurface.hxx>
 #include <StepShape_VertexPoint.hxx>
@@ -13,6 +14,7 @@ namespace {
 
 TopAbs_ShapeEnum kind_of(const Handle(Standard_Transient) & entity) {
   if (entity->IsKind(STANDARD_TYPE(StepShape_FaceSurface))) return TopAbs_FACE;
+  if (entity->IsKind(STANDARD_TYPE(StepGeom_Surface))) return TopAbs_FACE;
   if (entity->IsKind(STANDARD_TYPE(StepShape_EdgeCurve))) return TopAbs_EDGE;
   if (entity->IsKind(STANDARD_TYPE(StepShape_VertexPoint))) return TopAbs_VERTEX;
   return TopAbs_SHAPE;

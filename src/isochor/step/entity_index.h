@@ -18,8 +18,9 @@ class EntityIndex {
   // Empty unless the document was read from a STEP file. O(entities).
   explicit EntityIndex(const Document& document);
 
-  // The face (FACE_SURFACE or ADVANCED_FACE), edge (EDGE_CURVE) or vertex (VERTEX_POINT) that
-  // became this shape, whatever its place and orientation; null when not known.
+  // The face (FACE_SURFACE, ADVANCED_FACE or a surface that stands alone), edge (EDGE_CURVE) or
+  // vertex (VERTEX_POINT) that became this shape, whatever its place and orientation; null when not
+  // known.
   Handle(Standard_Transient) entity(const TopoDS_Shape& shape) const;
   // Its number in the file, 12 for #12; 0 when not known.
   std::uint64_t number(const TopoDS_Shape& shape) const;

@@ -122,9 +122,11 @@ bool moved_rigidly(const TopoDS_Face& face) {
   return !move.IsNegative() && std::abs(move.ScaleFactor() - 1.0) <= kSameSurface;
 }
 
-FaceSurface face_surface(const TopoDS_Face& face) {
+FaceSurface face_surface(const TopoDS_Face& face, const Surface* stated) {
   TopLoc_Location location;
-  FaceSurface result = describe_surface(BRep_Tool::Surface(face, location));
+  Handle(Geom_Surface) own = BRep_Tool::Surface(face, location);
+  if (stated != nullptr) own = to_occt(*stated);
+  FaceSurface result = describe_surface(own);
   if (location.IsIdentity() || result.geometry.IsNull()) return result;
   // Opened first, moved then: whoever writes recognises poles that were not edited by doing the
   // same steps in the same order.

@@ -31,7 +31,9 @@ struct FaceSurface {
 // Whether the face stands where it is stored, or turned and shifted only.
 bool moved_rigidly(const TopoDS_Face& face);
 
-FaceSurface face_surface(const TopoDS_Face& face);
+// `stated`: the surface as the file states it, in its own coordinates, where a reader made another
+// of it (see file_surface.h); else null.
+FaceSurface face_surface(const TopoDS_Face& face, const Surface* stated = nullptr);
 
 // The same for a surface alone. `geometry` is left null when `surface` is.
 FaceSurface describe_surface(const Handle(Geom_Surface) & surface);

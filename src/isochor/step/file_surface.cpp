@@ -16,6 +16,8 @@
 #include <XSControl_TransferWriter.hxx>
 #include <algorithm>
 
+#include "isochor/step/entity_index.h"
+
 namespace isochor::internal {
 namespace {
 
@@ -47,6 +49,9 @@ std::optional<Surface> surface_of(const Spline& spline, std::vector<double> weig
   const KnotVector u_knots(du, u), v_knots(dv, v);
   const size_t size = static_cast<size_t>(u_knots.size()) * static_cast<size_t>(v_knots.size());
   if (poles.size() != size || (!weights.empty() && weights.size() != size)) return std::nullopt;
+  // Weights that are all equal cancel; OpenCASCADE leaves them out.
+  const auto differs = [&](double w) { return w != weights.front(); };
+  if (std::none_of(weights.begin(), weights.end(), differs)) weights.clear();
   return Surface(u_knots, v_knots, std::move(poles), std::move(weights));
 }
 
@@ -54,6 +59,15 @@ std::optional<Surface> surface_of(const Spline& spline, std::vector<double> weig
 // written.
 bool same_domain(const KnotVector& a, const KnotVector& b) {
   return a.degree() == b.degree() && a.begin() == b.begin() && a.end() == b.end();
+}
+
+// Parameters mean the same on what the reader made of a surface.
+bool same_range(const Geom_BSplineSurface& made, const Surface& stated) {
+  double u0 = 0.0, u1 = 0.0, v0 = 0.0, v1 = 0.0;
+  made.Bounds(u0, u1, v0, v1);
+  const KnotVector &u = stated.u_knots(), &v = stated.v_knots();
+  return made.UDegree() == u.degree() && made.VDegree() == v.degree() && u0 == u.begin() &&
+         u1 == u.end() && v0 == v.begin() && v1 == v.end();
 }
 
 std::vector<double> all_breaks(const KnotVector& knots) {
@@ -107,17 +121,12 @@ bool overwrite(const Spline& spline, const Surface& surface) {
 
 }  // namespace
 
-std::optional<Surface> file_surface(const Document& document, int k) {
-  if (document.format != FileFormat::kStep || document.session.IsNull()) return std::nullopt;
-  const Handle(XSControl_TransferReader) reader = document.session->TransferReader();
-  const TopoDS_Face face = document.face(k);
-  Handle(Standard_Transient) entity = reader->EntityFromShapeResult(face, 1);
-  if (entity.IsNull()) {
-    entity = reader->EntityFromShapeResult(face.Located(TopLoc_Location()), 1);
-  }
+namespace {
+
+std::optional<Surface> surface_of_entity(const Handle(Standard_Transient) & entity) {
   const auto step_face = Handle(StepShape_FaceSurface)::DownCast(entity);
-  if (step_face.IsNull()) return std::nullopt;
-  const Handle(StepGeom_Surface) surface = step_face->FaceGeometry();
+  auto surface = Handle(StepGeom_Surface)::DownCast(entity);
+  if (!step_face.IsNull()) surface = step_face->FaceGeometry();
   const auto plain = Handle(StepGeom_BSplineSurfaceWithKnots)::DownCast(surface);
   if (!plain.IsNull()) return surface_of(plain, {});
   const auto rational =
@@ -133,15 +142,22 @@ std::optional<Surface> file_surface(const Document& document, int k) {
   return surface_of(rational, std::move(weights));
 }
 
+}  // namespace
+
+std::optional<Surface> file_surface(const Document& document, int k) {
+  return surface_of_entity(EntityIndex(document).entity(document.face(k)));
+}
+
 FileSurfaces changed_by_reader(const Document& document) {
   FileSurfaces changed;
+  const EntityIndex index(document);
   for (int k = 0; k < document.face_count(); ++k) {
     TopLoc_Location ignored;
     const Handle(Geom_Surface) surface = BRep_Tool::Surface(document.face(k), ignored);
     const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
     if (spline.IsNull() || (!spline->IsUPeriodic() && !spline->IsVPeriodic())) continue;
-    const auto in_file = file_surface(document, k);
-    if (in_file) changed.emplace(k, *in_file);
+    const auto in_file = surface_of_entity(index.entity(document.face(k)));
+    if (in_file && same_range(*spline, *in_file)) changed.emplace(k, *in_file);
   }
   return changed;
 }

@@ -17,7 +17,7 @@ namespace isochor::internal {
 std::optional<Surface> file_surface(const Document& document, int k);
 
 // The file's surfaces of the faces that OpenCASCADE changed when it read them, by face number from
-// 0.
+// 0: the same degrees and domains, other poles.
 using FileSurfaces = std::map<int, Surface>;
 FileSurfaces changed_by_reader(const Document& document);
 

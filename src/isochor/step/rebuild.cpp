@@ -52,9 +52,21 @@ int places_of(const TopoDS_Face& face, const Document& document) {
 Vec3 vector_of(const gp_Pnt& p) { return {p.X(), p.Y(), p.Z()}; }
 gp_Pnt point_of(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
+// The surface that the file states for face `k`, when that is what was edited: else null, and what
+// the reader made of it counts.
+const Surface* stated_surface(const Surface& edited, const TopoDS_Face& face, int k,
+                              const FileSurfaces& stated) {
+  const auto found = stated.find(k);
+  if (found == stated.end()) return nullptr;
+  const Surface made = from_occt(*plain_bspline(face));
+  const bool of_reader = made.u_knots() == edited.u_knots() && made.v_knots() == edited.v_knots();
+  return of_reader ? nullptr : &found->second;
+}
+
 // Hands each edited face to the part that stores it; a refusal when that is not one part.
 std::string distribute(const Document& document, const std::vector<EditedFace>& faces,
                        const std::map<int, Surface>& converted, std::vector<Part>& parts) {
+  const FileSurfaces stated = changed_by_reader(document);
   for (const auto& edited : faces) {
     const TopoDS_Face face = document.face(edited.face);
     const int places = places_of(face, document);
@@ -71,12 +83,14 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
         found = true;
         part.changes.push_back({TopoDS::Face(own(k)),
                                 handle_of(edited.face),
-                                local_surface(edited.surface, face),
+                                local_surface(edited.surface, face, edited.face, stated),
                                 {}});
         const auto before = converted.find(edited.face);
         if (before != converted.end()) {
           part.changes.back().before = local_surface(before->second, face);
         }
+        const Surface* file = stated_surface(edited.surface, face, edited.face, stated);
+        if (file != nullptr) part.changes.back().before = *file;
       }
     }
     if (!found) return handle_of(edited.face) + ": belongs to no part of the file";
@@ -133,13 +147,15 @@ std::string rebuild_one(Document& document, const Part& part, std::vector<Rebuil
 
 }  // namespace
 
-Surface local_surface(const Surface& surface, const TopoDS_Face& face) {
+Surface local_surface(const Surface& surface, const TopoDS_Face& face, int k,
+                      const FileSurfaces& stated) {
   TopLoc_Location location;
   BRep_Tool::Surface(face, location);
   if (location.IsIdentity()) return surface;
   const gp_Trsf& out = location.Transformation();
   const gp_Trsf in = out.Inverted();
-  const auto old = plain_bspline(face);
+  const Surface* own = stated_surface(surface, face, k, stated);
+  const auto old = own != nullptr ? to_occt(*own) : plain_bspline(face);
   const bool same_grid =
       !old.IsNull() && old->NbUPoles() == surface.u_size() && old->NbVPoles() == surface.v_size();
   std::vector<Vec3> poles = surface.poles();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "isochor/step/document.h"
+#include "isochor/step/file_surface.h"
 #include "isochor/step/rebuild_plan.h"
 #include "isochor/step/solid_model.h"
 
@@ -24,8 +25,10 @@ namespace isochor::internal {
                                   std::vector<RebuildPlan>* plans = nullptr);
 
 // `surface`, given in the document's coordinates, in those of the face's own surface. Poles that
-// have not moved get the old pole itself, because transforming there and back would round.
-Surface local_surface(const Surface& surface, const TopoDS_Face& face);
+// have not moved get the old pole itself, because transforming there and back would round. `stated`
+// are the surfaces that the reader changed; `face` is number `k` of the document.
+Surface local_surface(const Surface& surface, const TopoDS_Face& face, int k = -1,
+                      const FileSurfaces& stated = {});
 
 // One part only, without labels: for a plan that has no refusal.
 TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan);

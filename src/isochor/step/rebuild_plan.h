@@ -29,7 +29,8 @@ struct FaceChange {
   TopoDS_Face face;
   std::string handle;  // for messages
   Surface surface;
-  std::optional<Surface> before;  // of a face that was no B-spline and was converted
+  // Of a face that was no B-spline and was converted, or that the reader changed.
+  std::optional<Surface> before;
 };
 
 struct NewSurface {
