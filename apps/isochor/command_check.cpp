@@ -7,6 +7,9 @@
 #include "isochor/bspline/joins.h"
 #include "model_source.h"
 #include "terminal.h"
+#ifdef ISOCHOR_WITH_OCCT
+#include "import_output.h"
+#endif
 
 namespace isochor::app {
 namespace {
@@ -17,8 +20,9 @@ std::vector<std::string> findings_of(const LoadedModel& loaded) {
 #ifdef ISOCHOR_WITH_OCCT
   if (loaded.solid) {
     const ShapeFacts& facts = loaded.solid->facts;
-    findings = facts.defects;
-    if (!facts.valid && findings.empty()) findings.emplace_back("the shape is not valid");
+    findings = import_findings(loaded.solid->import);
+    findings.insert(findings.end(), facts.defects.begin(), facts.defects.end());
+    if (!facts.valid && facts.defects.empty()) findings.emplace_back("the shape is not valid");
     if (!facts.closed) findings.push_back("open: " + loaded.surroundings.why_open);
     if (facts.closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
     return findings;
@@ -126,6 +130,13 @@ int run_check(const CheckOptions& options, const Common& common) {
                      .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())
                      .set("bound", loaded.volume_bound)
                      .set("undefined_by_gaps", loaded.undefined_by_gaps);
+#ifdef ISOCHOR_WITH_OCCT
+  if (loaded.solid) {
+    result.set("area", loaded.solid->facts.area)
+        .set("faces", static_cast<long>(loaded.solid->faces.size()))
+        .set("import", to_value(loaded.solid->import));
+  }
+#endif
   if (original) {
     print(common, "against " + options.against + ":");
     result.set("against", compare(loaded, *original, common));

@@ -6,6 +6,9 @@
 #include "isochor/bspline/joins.h"
 #include "model_source.h"
 #include "terminal.h"
+#ifdef ISOCHOR_WITH_OCCT
+#include "import_output.h"
+#endif
 
 namespace isochor::app {
 namespace {
@@ -208,10 +211,12 @@ int run_info(const InfoOptions& options, const Common& common) {
   if (loaded.solid) {
     unit = loaded.solid->unit;
     print_faces(*loaded.solid, common);
+    print_import(common, loaded.solid->import);
     result.set("format", loaded.solid->format)
         .set("valid", loaded.solid->facts.valid)
         .set("solids", loaded.solid->facts.solids)
         .set("faces", faces_value(*loaded.solid))
+        .set("import", to_value(loaded.solid->import))
         .set("notices", loaded.solid->notices);
   }
 #endif

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "commands.h"
+#include "isochor/base/error.h"
 #include "isochor/edit/suggestion.h"
 #include "isochor/io/edits_json.h"
 #include "isochor/io/file.h"
@@ -51,18 +52,27 @@ std::string why_nothing_is_free(const LoadedModel& loaded,
   return "no face has a place that is free enough, even refined" + hint;
 }
 
+// Shapes of coordinates like 1e300 have no measures: an error about the model.
+std::optional<Edit> suggested(const LoadedModel& loaded, const std::string& path) {
+  try {
+    return suggest_edit(loaded.patches, loaded.surroundings);
+  } catch (const InputError& error) {
+    throw error.in_file(path);
+  }
+}
+
 }  // namespace
 
 int run_suggest(const SuggestOptions& options, const Common& common) {
   LoadedModel loaded = load_model(options.model, common);
   std::optional<Edit> edit;
-  if (!loaded.patches.patches.empty()) edit = suggest_edit(loaded.patches, loaded.surroundings);
+  if (!loaded.patches.patches.empty()) edit = suggested(loaded, options.model);
   constexpr size_t kMostConversions = 4;
   const std::vector<std::string> candidates = convertible_faces(loaded);
   for (size_t k = 0; !edit && k < candidates.size() && k < kMostConversions; ++k) {
     const LoadedModel converted = load_model(options.model, common, {candidates[k]});
     if (!converted.patches.patches.empty()) {
-      edit = suggest_edit(converted.patches, converted.surroundings);
+      edit = suggested(converted, options.model);
     }
   }
   if (!edit) {

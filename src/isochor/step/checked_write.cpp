@@ -52,6 +52,15 @@ struct Way {
   WriteSettings settings;  // of OpenCASCADE's writer
 };
 
+// OpenCASCADE writes what it has read: what it lost on the way in would be lost for good. Lines
+// that are not touched lose nothing. A change of format may mend a file that breaks rules but lost
+// no face; an edit would build on what is not known.
+std::string objection_to_import(const WriteJob& job, const ImportAccount& account, const Way& way) {
+  const bool nothing_lost = account.lost.empty() || way.line_by_line;
+  const bool rules_matter = !account.broken.empty() && !job.edits.empty();
+  return nothing_lost && !rules_matter ? "" : account.objection();
+}
+
 // The rebuilt shape, checked before anything is written. A refusal is final: no way helps.
 std::vector<RebuildPlan> rebuild_and_check(const WriteJob& job, Document& document,
                                            WriteReport& report) {
@@ -102,6 +111,8 @@ WriteReport change_and_write(const WriteJob& job, const std::string& path, Way w
   WriteReport report;
   Document document = source_of(job, 0.3);
   WriteSettings& settings = way.settings;
+  report.refusal = objection_to_import(job, document.account, way);
+  if (!report.refusal.empty()) return report;
   if (format_of(path) == FileFormat::kStep) settings.surfaces = changed_by_reader(document);
   for (const auto& edit : job.edits) settings.surfaces.erase(edit.face);
   report.notices = document.notices;

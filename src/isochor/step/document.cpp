@@ -17,6 +17,7 @@
 
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
+#include "isochor/step/import_faces.h"
 
 namespace isochor::internal {
 namespace {
@@ -168,6 +169,7 @@ Document load_document(const std::string& path) {
   index_document(document);
   if (document.shape.IsNull()) throw InputError(path, "", "has no shape");
   if (document.faces.IsEmpty()) throw InputError(path, "", "has no face");
+  account_for_import(document);
   return document;
 }
 

@@ -14,6 +14,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "isochor/step/import_account.h"
 #include "isochor/step/length_unit.h"
 
 namespace isochor::internal {
@@ -36,6 +37,7 @@ struct Document {
   // By TShape, because names belong to the part and a part may be used in several places.
   std::unordered_map<const void*, std::string> names;
   std::vector<std::string> notices;
+  ImportAccount account;
 
   int face_count() const { return faces.Extent(); }
   // `k` counts from 0, as in FaceFacts.

@@ -23,6 +23,9 @@
 namespace isochor::internal {
 namespace {
 
+// Of the squared diagonal: faces below are lines or points but for rounding.
+constexpr double kNoArea = 1e-14;
+
 void add_entity_names(const Document& document, std::vector<std::vector<std::string>>& aliases) {
   if (document.session.IsNull() || document.session->TransferReader().IsNull()) return;
   const Handle(Interface_InterfaceModel) model = document.session->Model();
@@ -96,6 +99,12 @@ void integrate(const BrepTable& table, const Document& document, SolidModel& mod
   }
 }
 
+void note_faces_without_area(SolidModel& model, double diagonal) {
+  for (const FaceFacts& face : model.faces) {
+    if (!(face.area > kNoArea * diagonal * diagonal)) model.import.no_area.push_back(face.handle);
+  }
+}
+
 void convert(BrepTable& table, const std::vector<int>& faces, const std::string& path) {
   for (int f : faces) {
     if (f < 0 || f >= static_cast<int>(table.faces.size())) {
@@ -123,6 +132,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   model.unit = document.unit.name;
   model.schema = document.schema;
   model.notices = document.notices;
+  model.import = document.account;
   tell_progress(0.0, "checking");
   model.facts = shape_facts(document, false);  // integrals follow, face by face
   BrepTable table =
@@ -147,6 +157,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
     const ProgressPart part(0.5, 1.0);
     integrate(table, document, model);
   }
+  note_faces_without_area(model, table.diagonal);
   if (options.moments && model.facts.closed) model.moments = shape_moments(document.shape);
   if (!options.section.empty() && model.facts.closed) {
     const auto& plane = options.section;

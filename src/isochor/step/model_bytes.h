@@ -77,9 +77,18 @@ void transfer(Io& io, Section& f) {
   io(f.normal, f.height, f.area, f.bound, f.centroid, f.centroid_bound, f.coplanar);
 }
 template <typename Io>
+void transfer(Io& io, ShapeCounts& f) {
+  io(f.solids, f.shells, f.faces);
+}
+template <typename Io>
+void transfer(Io& io, ImportAccount& f) {
+  io(f.has_text, f.entities, f.error_entities, f.roots, f.junk_bytes, f.stated, f.read, f.broken,
+     f.lost, f.unused, f.added_faces, f.no_area, f.repairs, f.failures);
+}
+template <typename Io>
 void transfer(Io& io, SolidModel& f) {
   io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.moments, f.section,
-     f.notices);
+     f.import, f.notices);
 }
 template <typename Io>
 void transfer(Io& io, WriteReport& f) {

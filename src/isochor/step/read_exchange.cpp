@@ -62,6 +62,7 @@ IFSelect_ReturnStatus parse_step(Document& document, STEPControl_Reader& reader)
   if (start == 0) return reader.ReadFile(document.path.c_str());
   // A byte order mark is too common to mention; anything else may be a sign of damage.
   if (text.compare(0, start, "\xEF\xBB\xBF") != 0) {
+    document.account.junk_bytes = static_cast<int>(start);
     document.notices.push_back("skipped " + std::to_string(start) + " bytes before 'ISO-10303-21'");
   }
   std::istringstream in(text.substr(start));
@@ -143,10 +144,14 @@ void note_checks(Document& document) {
         std::to_string(errors) + " of " + std::to_string(model->NbEntities()) +
         " entities break the rules of the format; see that nothing is missing");
   }
+  document.account.error_entities = errors;
+  document.account.entities = model->NbEntities();
   const auto checks = document.session->TransferReader()->LastCheckList();
   std::map<std::string, int> fails, warnings;
   collect(checks, true, fails);
   collect(checks, false, warnings);
+  document.account.failures.assign(fails.begin(), fails.end());
+  document.account.repairs.assign(warnings.begin(), warnings.end());
   note(fails, "could not be read", document.notices);
   note(warnings, "repaired while reading", document.notices);
 }
@@ -169,6 +174,7 @@ void read_step(Document& document) {
   work_in(document.unit, document.xde);
   const int roots = reader.NbRootsForTransfer();
   if (roots == 0) throw InputError(document.path, "", "has no shape (no root to read)");
+  document.account.roots = roots;
   if (roots > 1) document.notices.push_back(std::to_string(roots) + " separate roots");
   if (!transfer(reader, document)) throw InputError(document.path, "", "has no shape");
   note_checks(document);

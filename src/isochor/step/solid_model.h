@@ -13,6 +13,7 @@
 
 #include "isochor/base/progress.h"
 #include "isochor/bspline/patch_model.h"
+#include "isochor/step/import_account.h"
 #include "isochor/volume/moments.h"
 #include "isochor/volume/section.h"
 
@@ -82,7 +83,8 @@ struct SolidModel {
   ShapeFacts facts;
   std::optional<MomentIntegrals> moments;  // when asked for and the shape is closed
   std::optional<Section> section;          // the same
-  std::vector<std::string> notices;        // repairs and warnings of the reader, in words
+  ImportAccount import;
+  std::vector<std::string> notices;  // repairs and warnings of the reader, in words
 };
 
 // What a child process may use.
