@@ -128,20 +128,20 @@ TEST(WriteEditedShapes, ClosedFacesKeepTheFilesOwnPoles) {
   EXPECT_EQ(solid.patches.surface(patch).u_knots(), stated.u_knots());
   ASSERT_EQ(solid.patches.joins.size(), 1u) << "the seam";
   EXPECT_EQ(solid.patches.joins[0].a.patch, solid.patches.joins[0].b.patch);
-  // Both rows of the seam move, inside the caps.
+  // A ring around moves, so that the seam stays smooth.
   std::vector<Vec3> poles = stated.poles();
   const Side side = solid.patches.joins[0].a.side;
-  const bool along_v = side == Side::kUBegin || side == Side::kUEnd;
-  const int last = along_v ? stated.u_size() - 1 : stated.v_size() - 1;
-  const auto at = [&](int row) { return along_v ? stated.index(row, 2) : stated.index(2, row); };
-  poles[at(0)] += Vec3(0.02, 0.03, 0.01);
-  poles[at(last)] += Vec3(0.02, 0.03, 0.01);
+  const bool around_u = side == Side::kUBegin || side == Side::kUEnd;
+  const int around = around_u ? stated.u_size() : stated.v_size();
+  for (int k = 0; k < around; ++k) {
+    poles[around_u ? stated.index(k, 2) : stated.index(2, k)] += Vec3(0.02, 0.03, 0.01);
+  }
   const Surface moved(stated.u_knots(), stated.v_knots(), poles, stated.weights());
   const auto report = write_edited(input, {}, {{face, moved}}, folder.file("out.step"));
   ASSERT_TRUE(report.written) << report.refusal;
   EXPECT_EQ(report.written_by, "line by line") << report.not_line_by_line;
   EXPECT_EQ(report.edited_exact, 1);
-  EXPECT_LE(report.lines_appended, 4) << "two poles of the surface, two of the seam";
+  EXPECT_LE(report.lines_appended, around + 1) << "poles of the surface, one of the seam";
   const Document after = load_document(folder.file("out.step"));
   EXPECT_EQ(internal::file_surface(after, face)->poles(), poles);
 }
