@@ -120,6 +120,18 @@ TEST(Rational, Nearest) {
     expect_nearest(half - Rational(kSmallest) * Rational(kSmallest));
   }
   for (long n = 1; n < 200; ++n) expect_nearest(Rational(Integer(n), Integer(7)));
+  // On both sides of what fits a mantissa.
+  std::uniform_int_distribution<long> whole(1, 1L << 54);
+  for (int round = 0; round < 1000; ++round) {
+    const Rational quotient(Integer(whole(random)), Integer(whole(random)));
+    expect_nearest(quotient);
+    expect_nearest(-quotient);
+  }
+  const Integer most((1L << 53) - 1);
+  for (const Integer& other : {Integer(1), Integer(3), most - 1, most, most + 1, most + 2}) {
+    expect_nearest(Rational(most, other));
+    expect_nearest(Rational(other, most));
+  }
 }
 
 TEST(Rational, RangeOfDouble) {

@@ -198,6 +198,13 @@ std::string Rational::to_string() const {
 
 double Rational::to_double() const {
   if (is_zero()) return 0.0;
+  const fmpz* const top_word = fmpq_numref(handle(words_));
+  const fmpz* const bottom_word = fmpq_denref(handle(words_));
+  if (fmpz_bits(top_word) <= kMantissaBits && fmpz_bits(bottom_word) <= kMantissaBits) {
+    // Both are doubles, and the processor rounds a quotient once.
+    return static_cast<double>(fmpz_get_si(top_word)) /
+           static_cast<double>(fmpz_get_si(bottom_word));
+  }
   // |value| = quotient 2^-scale, with more than enough bits and a sticky last one.
   Integer above = numerator().sign() < 0 ? -numerator() : numerator();
   Integer below = denominator();
