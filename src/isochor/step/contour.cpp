@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 
 #include "isochor/base/tolerance.h"
 
@@ -18,11 +19,13 @@ constexpr int kExactPoints = 48;  // exact rules up to this size
 // A piece is good when halving it changes less than Integrand::kConverged, relative to the absolute
 // integral of the face. Where that is small (walls along z), rounding errors are the limit.
 constexpr int kCrossingSamples = 32;
+constexpr int kPlaneSamples = 4;
 
 // A piece of a loop: u(t), v(t) and v'(t), or a straight line.
 class Path {
  public:
-  Path(const EdgeUse& use) : use_(&use) {}
+  explicit Path(const EdgeUse& use)
+      : use_(&use), curve_(std::make_shared<Geom2dAdaptor_Curve>(use.curve)) {}
   Path(const gp_Pnt2d& a, const gp_Pnt2d& b) : a_(a), b_(b) {}
 
   double first() const { return use_ ? use_->first : 0.0; }
@@ -30,17 +33,14 @@ class Path {
   double sign() const { return use_ && use_->reversed ? -1.0 : 1.0; }
   void at(double t, gp_Pnt2d& p, gp_Vec2d& d) const {
     if (use_) {
-      use_->curve->D1(t, p, d);
+      curve_->D1(t, p, d);
     } else {
       d = gp_Vec2d(a_, b_);
       p = a_.Translated(d * t);
     }
   }
   gp_Pnt2d value(double t) const {
-    gp_Pnt2d p;
-    gp_Vec2d d;
-    at(t, p, d);
-    return p;
+    return use_ ? curve_->Value(t) : a_.Translated(gp_Vec2d(a_, b_) * t);
   }
   // 0: not a polynomial.
   int degree() const;
@@ -48,18 +48,18 @@ class Path {
 
  private:
   const EdgeUse* use_ = nullptr;
+  std::shared_ptr<Geom2dAdaptor_Curve> curve_;  // keeps the span it was last asked for
   gp_Pnt2d a_, b_;
 };
 
 int Path::degree() const {
   if (!use_) return 1;
-  const Geom2dAdaptor_Curve curve(use_->curve);
-  switch (curve.GetType()) {
+  switch (curve_->GetType()) {
     case GeomAbs_Line:
       return 1;
     case GeomAbs_BSplineCurve:
     case GeomAbs_BezierCurve:
-      return curve.IsRational() ? 0 : curve.Degree();
+      return curve_->IsRational() ? 0 : curve_->Degree();
     default:
       return 0;
   }
@@ -73,12 +73,11 @@ std::vector<double> Path::breaks() const {
   return {at.begin(), at.end()};
 }
 
-// Adds the parameters where `coordinate` passes one of the levels between samples t0 and t1.
+// Adds the parameters where `coordinate` passes one of the levels between t0 and t1, where it is c0
+// and c1.
 template <typename Coordinate>
-void add_crossings(const Coordinate& coordinate, double t0, double t1,
+void add_crossings(const Coordinate& coordinate, double t0, double t1, double c0, double c1,
                    const std::vector<double>& levels, std::vector<double>& out) {
-  const double c0 = coordinate(t0);
-  const double c1 = coordinate(t1);
   const double low = std::min(c0, c1);
   const double high = std::max(c0, c1);
   auto level = std::upper_bound(levels.begin(), levels.end(), low);
@@ -172,20 +171,31 @@ std::vector<double> Contour<Integrand>::cuts(const Path& path, bool& u_varies,
   const gp_Pnt2d origin = path.value(path.first());
   const auto u = [&](double t) { return path.value(t).X(); };
   const auto v = [&](double t) { return path.value(t).Y(); };
-  const int samples = path.degree() == 1 && !Integrand::kHasLevel ? 1 : kCrossingSamples;
+  const auto level = [&](double t) {
+    if constexpr (Integrand::kHasLevel) return integrand_->level(path.value(t));
+    return 0.0;
+  };
+  int samples = path.degree() == 1 && !Integrand::kHasLevel ? 1 : kCrossingSamples;
+  // Nothing to cross: only whether the coordinates vary is asked.
+  if (!Integrand::kHasLevel && integrand_->plane()) {
+    samples = std::min(samples, std::max(kPlaneSamples, path.degree() + 2));
+  }
   for (size_t p = 0; p + 1 < smooth.size(); ++p) {
+    double t0 = smooth[p];
+    gp_Pnt2d begin = path.value(t0);
+    double level0 = level(t0);
     for (int k = 0; k < samples; ++k) {
-      const double t0 = smooth[p] + (smooth[p + 1] - smooth[p]) * k / samples;
       const double t1 = smooth[p] + (smooth[p + 1] - smooth[p]) * (k + 1) / samples;
       const gp_Pnt2d end = path.value(t1);
+      const double level1 = level(t1);
       u_varies = u_varies || end.X() != origin.X();
       v_varies = v_varies || end.Y() != origin.Y();
-      add_crossings(u, t0, t1, integrand_->u_breaks(), at);
-      add_crossings(v, t0, t1, integrand_->v_breaks(), at);
-      if constexpr (Integrand::kHasLevel) {
-        const auto level = [&](double t) { return integrand_->level(path.value(t)); };
-        add_crossings(level, t0, t1, {0.0}, at);
-      }
+      add_crossings(u, t0, t1, begin.X(), end.X(), integrand_->u_breaks(), at);
+      add_crossings(v, t0, t1, begin.Y(), end.Y(), integrand_->v_breaks(), at);
+      if (Integrand::kHasLevel) add_crossings(level, t0, t1, level0, level1, {0.0}, at);
+      t0 = t1;
+      begin = end;
+      level0 = level1;
     }
   }
   std::sort(at.begin(), at.end());

@@ -219,13 +219,18 @@ void FluxIntegrand<Kind>::add_span(const Line& line, int ordinal, double from, d
       su.add(slope, line.value[first + j]);
       sv.add(b, line.slope[first + j]);
     }
+    const double weight = sign * (to - from) * table.rule.weights[k];
+    if (!spline_->rational()) {
+      add_point({s.x, s.y, s.z}, {su.x, su.y, su.z}, {sv.x, sv.y, sv.z}, weight, sums);
+      continue;
+    }
     const double w = s.w;
     const gp_Pnt p(s.x / w, s.y / w, s.z / w);
     const gp_Vec du((su.x - su.w * p.X()) / w, (su.y - su.w * p.Y()) / w,
                     (su.z - su.w * p.Z()) / w);
     const gp_Vec dv((sv.x - sv.w * p.X()) / w, (sv.y - sv.w * p.Y()) / w,
                     (sv.z - sv.w * p.Z()) / w);
-    add_point(p, du, dv, sign * (to - from) * table.rule.weights[k], sums);
+    add_point(p, du, dv, weight, sums);
   }
 }
 
