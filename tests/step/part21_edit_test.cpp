@@ -78,6 +78,13 @@ TEST(Part21Edit, ChangesOnlyWhatWasAsked) {
   EXPECT_EQ(edit.lines_changed(), 1);
 }
 
+TEST(Part21Edit, AppendsOneLine) {
+  const Part21File file("f.step", with_data("#1=A();\n"));
+  Part21Edit edit(file);
+  (void)edit.append(file.instances()[0], "B((1,\r\n2),\n'it''s')");
+  EXPECT_EQ(edit.text(), with_data("#1=A();\n#2=B((1,2),'it''s');\n"));
+}
+
 TEST(Part21Edit, RefusesOverlaps) {
   const Part21File file("f.step", with_data("#1=A((#2,#3));\n#2=B();\n#3=B();\n"));
   Part21Edit edit(file);

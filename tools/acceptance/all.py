@@ -28,6 +28,8 @@ def main():
     commands = [("laws.py", [options.build_folder]), ("figure_four.py", [program]),
                 ("solids.py", [program]),
                 ("continuity.py", [program, "--out", options.build_folder / "acceptance" / "continuity"]),
+                ("line_by_line.py", [program, *([options.real_files] if options.real_files else []),
+                                     "--out", options.build_folder / "acceptance" / "line_by_line"]),
                 ("real_files.py", real_files),
                 ("whole_solids.py", [options.build_folder / "bin" / "isochor_solid_probe",
                                      *([options.real_files] if options.real_files else [])])]

@@ -47,9 +47,25 @@ void Part21Edit::repoint(const Part21Instance& instance, const Part21Value& refe
   replace(instance, reference.span, "#" + std::to_string(to));
 }
 
+namespace {
+
+// Copies of instances may have line breaks between their values; in strings they stay.
+std::string in_one_line(const std::string& body) {
+  std::string line;
+  bool quoted = false;
+  for (char c : body) {
+    if (c == '\'') quoted = !quoted;
+    if (quoted || (c != '\n' && c != '\r')) line += c;
+  }
+  return line;
+}
+
+}  // namespace
+
 std::uint64_t Part21Edit::append(const Part21Instance& beside, const std::string& body) {
   ISOCHOR_REQUIRE(beside.section < appended_.size(), beside.section);
-  appended_[beside.section] += "#" + std::to_string(next_) + "=" + body + ";" + file_.line_ending();
+  appended_[beside.section] +=
+      "#" + std::to_string(next_) + "=" + in_one_line(body) + ";" + file_.line_ending();
   ++count_;
   return next_++;
 }

@@ -30,7 +30,8 @@ class Part21Edit {
   void replace(const Part21Instance& instance, const TextSpan& span, std::string text);
   // The same with a reference; nothing happens when it is the one already.
   void repoint(const Part21Instance& instance, const Part21Value& reference, std::uint64_t to);
-  // A new instance at the end of the data section of `beside`; `body` without '#12=' and ';'.
+  // A new instance, a line at the end of the data section of `beside`; `body` without '#12=' and
+  // ';'; line breaks between its values are left out.
   // Returns its number, one more than the largest so far.
   std::uint64_t append(const Part21Instance& beside, const std::string& body);
 
