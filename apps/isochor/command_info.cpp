@@ -87,12 +87,15 @@ void print_joins(const LoadedModel& loaded, const Common& common) {
   print(common, format("joins between editable patches: %zu", model.joins.size()));
   for (const Join& join : model.joins) {
     print(common,
-          format("  %s %s - %s %s: %s, gap %.2g, angle %.2g rad%s%s",
+          format("  %s %s - %s %s: %s, gap %.2g, angle %.2g rad%s%s%s",
                  model.patches[static_cast<size_t>(join.a.patch)].handle.c_str(),
                  name_of(join.a.side),
                  model.patches[static_cast<size_t>(join.b.patch)].handle.c_str(),
                  name_of(join.b.side), name_of(join.smoothness), join.max_gap, join.max_angle_rad,
-                 join.matching ? "" : ", not tied: ", join.matching ? "" : join.mismatch.c_str()));
+                 join.matching ? ""
+                 : join.common ? ", tied in a common basis ("
+                               : ", not tied: ",
+                 join.matching ? "" : join.mismatch.c_str(), join.common ? ")" : ""));
   }
 }
 
@@ -104,11 +107,13 @@ Value join_value(const PatchModel& model, const Join& join) {
                               .push(model.patches[static_cast<size_t>(join.b.patch)].handle))
           .set("sides", Value::list().push(name_of(join.a.side)).push(name_of(join.b.side)))
           .set("continuity", name_of(join.smoothness))
-          .set("tied", join.matching)
+          .set("tied", join.matching || join.common)
+          .set("common_basis", join.common)
           .set("max_gap", join.max_gap)
           .set("max_angle_rad", join.max_angle_rad)
           .set("max_curvature_jump", join.max_curvature_jump);
-  if (!join.matching) value.set("why_not_tied", join.mismatch);
+  if (join.common) value.set("bases", join.mismatch);
+  if (!join.matching && !join.common) value.set("why_not_tied", join.mismatch);
   return value;
 }
 

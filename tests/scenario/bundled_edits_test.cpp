@@ -111,6 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"FuselagePull", "fuselage.step", "fuselage_pull.json", 1},
                       Case{"Fuselage12Pull", "fuselage12.step", "fuselage12_pull.json", 4},
                       Case{"HullPull", "hull.step", "hull_pull.json", 2},
+                      Case{"PatchworkPull", "patchwork.step", "patchwork_pull.json", 6},
                       Case{"CubeFigure4", "cube.step", "cube_figure4.json", 3}),
     [](const auto& instance) { return std::string(instance.param.name); });
 

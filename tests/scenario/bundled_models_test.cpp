@@ -25,7 +25,8 @@ using testing::step_entities;
 using testing::step_surface;
 
 const std::string kFolder = std::string(ISOCHOR_SOURCE_DIR) + "/data/step/";
-const char* const kStepFiles[] = {"fuselage.step", "fuselage12.step", "hull.step", "cube.step"};
+const char* const kStepFiles[] = {"fuselage.step", "fuselage12.step", "hull.step", "cube.step",
+                                  "patchwork.step"};
 
 using Entities = std::map<int, std::string>;
 
@@ -88,7 +89,7 @@ TEST(BundledModels, AreWhatTheirGeneratorWrites) {
     EXPECT_TRUE(read_text(entry.path().string()) == read_text(kFolder + name)) << name;
     ++files;
   }
-  EXPECT_EQ(files, 8);
+  EXPECT_EQ(files, 9);
   fs::remove_all(folder);
 }
 
@@ -100,6 +101,7 @@ TEST(BundledModels, HaveTheDocumentedVolumes) {
         << file << ": " << exact_volume(file).to_string();
   }
   EXPECT_EQ(exact_volume("cube.step").to_string(), "1");
+  EXPECT_EQ(exact_volume("patchwork.step").to_string(), "1");
 }
 
 // Second method: z dx dy by Gauss over the skins, and over the flat faces by Green's theorem.

@@ -50,8 +50,10 @@ void expect_ties_are_close(const Read& r) {
   }
 }
 
-// A flat bicubic sheet over [x0, x1] x [y0, y1] with `n` poles each way; z = slope * x.
-TopoDS_Face sheet(double x0, double x1, double y0, double y1, int n, double slope = 0.0) {
+// A flat bicubic sheet over [x0, x1] x [y0, y1] with `n` poles each way; z = slope * x. `uneven`:
+// how much slower y starts than it ends.
+TopoDS_Face sheet(double x0, double x1, double y0, double y1, int n, double slope = 0.0,
+                  double uneven = 0.0) {
   TColgp_Array2OfPnt poles(1, n, 1, n);
   TColStd_Array1OfReal knots(1, n - 2);
   TColStd_Array1OfInteger counts(1, n - 2);
@@ -66,7 +68,8 @@ TopoDS_Face sheet(double x0, double x1, double y0, double y1, int n, double slop
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
       const double x = x0 + (x1 - x0) * greville(i);
-      poles(i + 1, j + 1) = gp_Pnt(x, y0 + (y1 - y0) * greville(j), slope * x);
+      const double t = greville(j) * (1.0 - uneven * (1.0 - greville(j)));
+      poles(i + 1, j + 1) = gp_Pnt(x, y0 + (y1 - y0) * t, slope * x);
     }
   }
   const Handle(Geom_BSplineSurface) surface =
@@ -145,9 +148,28 @@ TEST(BrepJoins, TangentPatchesJoinSmoothlyAndOpenSidesStayFree) {
   EXPECT_EQ(r.model.ties.size(), 6u);
 }
 
-TEST(BrepJoins, PatchesWithDifferentKnotsLockTheirCommonSide) {
-  const Read r = read(sewn({sheet(0, 1, 0, 1, 6), sheet(1, 2, 0, 1, 8)}));
+TEST(BrepJoins, PatchesWithDifferentKnotsAreTiedInACommonBasis) {
+  const Read r = read(sewn({sheet(0, 1, 0, 1, 6, 0.3), sheet(1, 2, 0, 1, 8, 0.3)}));
   ASSERT_EQ(r.model.joins.size(), 1u);
+  const Join& join = r.model.joins[0];
+  EXPECT_FALSE(join.matching);
+  EXPECT_TRUE(join.common);
+  EXPECT_EQ(join.mismatch, "6 poles against 8");
+  EXPECT_EQ(join.smoothness, Smoothness::kCurvature);
+  EXPECT_TRUE(r.model.locked_sides.empty());
+  EXPECT_TRUE(r.model.fixed_points.empty());
+  EXPECT_TRUE(r.model.locks.empty());
+  EXPECT_EQ(r.model.ties.size(), 2u);  // both ends
+  ASSERT_EQ(r.model.relations.size(), 2u);
+  EXPECT_EQ(r.model.relations[0].kind, SmoothRelation::Kind::kTie);
+  EXPECT_EQ(r.model.relations[1].order, 2);
+  expect_ties_are_close(r);
+}
+
+TEST(BrepJoins, CurvesThatRunDifferentlyLockTheirCommonSide) {
+  const Read r = read(sewn({sheet(0, 1, 0, 1, 6), sheet(1, 2, 0, 1, 8, 0.0, 0.3)}));
+  ASSERT_EQ(r.model.joins.size(), 1u);
+  EXPECT_FALSE(r.model.joins[0].common);
   EXPECT_FALSE(r.model.joins[0].matching);
   EXPECT_FALSE(r.model.joins[0].mismatch.empty());
   ASSERT_EQ(r.model.locked_sides.size(), 2u);
@@ -156,8 +178,30 @@ TEST(BrepJoins, PatchesWithDifferentKnotsLockTheirCommonSide) {
   EXPECT_EQ(r.model.fixed_points.size(), 4u);
 }
 
-TEST(BrepJoins, TwoPatchesAgainstOneLockBothSides) {
+TEST(BrepJoins, TwoPatchesAgainstOneMoveWithIt) {
   const Read r = read(sewn({sheet(0, 1, 0, 1, 6), sheet(1, 2, 0, 0.5, 6), sheet(1, 2, 0.5, 1, 6)}));
+  ASSERT_EQ(r.model.patches.size(), 3u);
+  EXPECT_TRUE(r.model.locked_sides.empty());
+  EXPECT_TRUE(r.model.fixed_points.empty());
+  EXPECT_TRUE(r.model.locks.empty());
+  ASSERT_EQ(r.model.joins.size(), 3u);
+  int parts = 0;
+  for (const Join& join : r.model.joins) {
+    if (join.matching) continue;
+    EXPECT_TRUE(join.common);
+    const bool first_is_long = !join.part_a.whole();
+    EXPECT_NE(first_is_long, !join.part_b.whole());
+    const SidePart& part = first_is_long ? join.part_a : join.part_b;
+    EXPECT_TRUE(part == (SidePart{0.0, 1.5}) || part == (SidePart{1.5, 3.0})) << part.from;
+    ++parts;
+  }
+  EXPECT_EQ(parts, 2);
+  expect_ties_are_close(r);
+}
+
+TEST(BrepJoins, APartThatDoesNotFitLocksOnlyWhatShapesIt) {
+  const Read r =
+      read(sewn({sheet(0, 1, 0, 1, 12), sheet(1, 2, 0, 0.5, 6), sheet(1, 2, 0.5, 1, 6, 0.0, 0.3)}));
   ASSERT_EQ(r.model.patches.size(), 3u);
   int parts = 0;
   int several = 0;
@@ -165,15 +209,27 @@ TEST(BrepJoins, TwoPatchesAgainstOneLockBothSides) {
     parts += side.reason.find("meets only a part of a side of face:") == 0 ? 1 : 0;
     several += side.reason.find("is shared by several faces, among them face:") == 0 ? 1 : 0;
   }
-  EXPECT_EQ(parts, 2);
-  EXPECT_EQ(several, 2);
-  ASSERT_EQ(r.model.joins.size(), 1u);  // between the two small ones
-  // The end of that join lies on the side of the large one.
-  bool found = false;
-  for (const auto& [point, reason] : r.model.fixed_points) {
-    found = found || reason.find("a corner on the boundary of face:") == 0;
+  EXPECT_EQ(parts, 1);
+  EXPECT_EQ(several, 1);
+  EXPECT_EQ(r.model.joins.size(), 2u);  // of the two small ones, and of the part that fits
+  // Nine spans, twelve functions: those that begin before the middle of the fifth span and end
+  // after it or later are locked, eight of them, in one row. The normals agree: two more rows.
+  std::set<int> rows[3];
+  int large = 0;
+  for (int q = 0; q < 3; ++q) {
+    if (r.model.patches[static_cast<size_t>(q)].u_size() == 12) large = q;
   }
-  EXPECT_TRUE(found);
+  const Patch& patch = r.model.patches[static_cast<size_t>(large)];
+  for (const Lock& lock : r.model.locks) {
+    for (Side side : kSides) {
+      for (int row = 0; row < 3; ++row) {
+        for (const auto& [i, j] : side_indices(patch, side, row)) {
+          if (patch.point(i, j) == lock.point && side == Side::kUEnd) rows[row].insert(j);
+        }
+      }
+    }
+  }
+  for (const std::set<int>& locked : rows) EXPECT_EQ(locked.size(), 8u);
 }
 
 TEST(BrepJoins, HoleLeavesTheOuterSidesTied) {

@@ -107,6 +107,9 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Expected{"fuselage.step", fuselage_names()},
                       Expected{"fuselage12.step", fuselage12_names()},
                       Expected{"hull.step", {"starboard", "port", "transom", "deck"}},
+                      Expected{
+                          "patchwork.step",
+                          {"top left", "top right", "bottom", "front", "back", "left", "right"}},
                       Expected{"cube.step", {"top", "bottom", "front", "back", "left", "right"}}),
     [](const auto& instance) {
       const std::string file = instance.param.file;

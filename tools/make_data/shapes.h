@@ -26,6 +26,10 @@ std::string hull_step();
 std::string cube_step();
 std::string cube_json();
 
+// The unit cube of seven bicubic patches in different bases. The top is two faces, "top left" and
+// "top right", which the front and the back meet along one side each (T-junctions).
+std::string patchwork_step();
+
 // Rational bodies of revolution around the z axis, of whole patches: a wall (cubic along the axis,
 // quadratic around it) between two disks; a torus, cubic both ways; a spindle with a blunt nose and
 // a blunt tail, quadratic both ways. Their knot lines are smooth by their poles only.

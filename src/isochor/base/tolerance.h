@@ -88,6 +88,11 @@ inline constexpr double kSameSurface = 1e-12;
 // this: a few d roundings of knot insertion in two directions, for degrees to 25. Dimensionless.
 inline constexpr double kSameRow = 1e-12;
 
+// An equation of smoothness follows from the ties of an edge in different bases when elimination
+// leaves at most this part of it. Dimensionless: the noise of measured factors, far below what an
+// independent equation leaves.
+inline constexpr double kImpliedRow = 1e-9;
+
 // Two strips of surface meet by constant factors when |H_n+ - lambda H_n- - rho H| (and the
 // relation of second derivatives) stays below kSmoothResidual times the terms it is made of.
 // Dimensionless: an edit that turns the surface by an angle a changes the angle between the strips

@@ -24,6 +24,13 @@ std::string smoothly(Smoothness smoothness) {
                                            : std::string("smoothly (") + name_of(smoothness) + ")";
 }
 
+// Whether function k along a side is somewhere nonzero on a part of it.
+bool shapes_part(const Patch& patch, const SideRef& ref, const SidePart& part, int k) {
+  if (part.whole()) return true;
+  const KnotVector& knots = knots_of(patch, running_direction(ref.side));
+  return knots[k] < part.to && knots[k + knots.degree() + 1] > part.from;
+}
+
 // Collects locks, each point and reason once.
 class LockCollector {
  public:
@@ -48,15 +55,19 @@ class LockCollector {
     if (seen_.insert({point, reason}).second) model_->locks.push_back({point, reason});
   }
 
-  // Rows `from` .. `to` - 1 of a side, counted inwards.
-  void lock_rows(const SideRef& ref, int from, int to, const std::string& text, bool continuity,
-                 int join = -1) {
+  // Rows `from` .. `to` - 1 of a side, counted inwards; along it the poles that shape the part.
+  void lock_rows(const SideRef& ref, const SidePart& part, int from, int to,
+                 const std::string& text, bool continuity, int join = -1) {
     const Patch& patch = patch_of(*model_, ref);
     to = std::min(to, knots_of(patch, across_direction(ref.side)).size());
     if (from >= to) return;
     const int id = reason(text, continuity, join);
     for (int row = from; row < to; ++row) {
-      for (const auto& [i, j] : side_indices(patch, ref.side, row)) lock(patch.point(i, j), id);
+      for (const auto& [i, j] : side_indices(patch, ref.side, row)) {
+        if (shapes_part(patch, ref, part, is_u_side(ref.side) ? j : i)) {
+          lock(patch.point(i, j), id);
+        }
+      }
     }
   }
 
@@ -89,7 +100,7 @@ class Covered {
         lines_.insert({relation.patch, relation.across, relation.knot});
       } else if (relation.kind == SmoothRelation::Kind::kPole) {
         for (const SideRef& ref : relation.sides) poles_.insert({ref.patch, ref.side});
-      } else {
+      } else if (relation.kind != SmoothRelation::Kind::kTie) {
         joins_.insert(relation.join);
       }
     }
@@ -129,10 +140,10 @@ int rows_for(const PatchModel& model, const SideRef& ref, int order) {
 void lock_side(const PatchModel& model, const LockedSide& locked, LockCollector* locks) {
   const std::string name = label_of(patch_of(model, locked.side));
   const int row = rows_for(model, locked.side, 0);
-  locks->lock_rows(locked.side, 0, row, name + " " + locked.reason, false);
+  locks->lock_rows(locked.side, locked.part, 0, row, name + " " + locked.reason, false);
   const int order = order_of(locked.smoothness);
   if (order == 0) return;
-  locks->lock_rows(locked.side, row, rows_for(model, locked.side, order),
+  locks->lock_rows(locked.side, locked.part, row, rows_for(model, locked.side, order),
                    name + " " + locked.reason + "; they meet " + smoothly(locked.smoothness) +
                        ", so the pole rows next to that edge stay too",
                    true);
@@ -160,16 +171,17 @@ void lock_join(const PatchModel& model, int k, bool covered, LockCollector* lock
   const std::string b = label_of(patch_of(model, join.b));
   const bool seam = join.a.patch == join.b.patch;
   const int order = covered ? 0 : order_of(join.smoothness);
-  for (const SideRef& ref : {join.a, join.b}) {
+  const bool together = join.matching || join.common;
+  for (const auto& [ref, part] : {std::pair(join.a, join.part_a), {join.b, join.part_b}}) {
     const int row = rows_for(model, ref, 0);
-    if (!join.matching) {
-      locks->lock_rows(ref, 0, row,
+    if (!together) {
+      locks->lock_rows(ref, part, 0, row,
                        (seam ? a + " meets itself at a seam" : a + " and " + b + " share an edge") +
                            " whose poles do not correspond (" + join.mismatch + ")",
                        false);
     }
     if (order > 0) {
-      locks->lock_rows(ref, join.matching ? 0 : row, rows_for(model, ref, order),
+      locks->lock_rows(ref, part, together ? 0 : row, rows_for(model, ref, order),
                        (seam ? a + " meets itself " : a + " and " + b + " meet ") +
                            smoothly(join.smoothness) + (seam ? " at its seam" : "") +
                            ": the poles next to that edge stay so that no crease appears",
@@ -206,11 +218,11 @@ void lock_poles(const PatchModel& model, int q, const Surface& surface, double s
     const std::string where =
         std::string("side ") + name_of(side) + " of " + label_of(patch) + " is one point";
     if (!is_collapsed(patch, side, classes)) {
-      locks->lock_rows({q, side}, 0, 1, where + ", but its poles are not tied to each other",
+      locks->lock_rows({q, side}, {}, 0, 1, where + ", but its poles are not tied to each other",
                        false);
     }
     if (pole.smoothness != Smoothness::kSharp && !covered.pole({q, side})) {
-      locks->lock_rows({q, side}, 0, 2,
+      locks->lock_rows({q, side}, {}, 0, 2,
                        where +
                            " with a tangent plane: the poles around it stay so that no tip "
                            "appears",

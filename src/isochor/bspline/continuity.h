@@ -24,9 +24,11 @@ namespace isochor {
 // model.joins as they are (the reader fills them, or find_joins). What is locked:
 //  - fixed points: as the reader said;
 //  - trim: functions whose support is not wholly inside (trims.h);
-//  - locked sides: the boundary row; further rows by their smoothness (continuity);
+//  - locked sides: the boundary row, or what shapes the part that is locked; further rows by their
+//    smoothness (continuity);
 // and, where no relation keeps the smoothness:
-//  - joins that do not match: the boundary rows of both sides; smooth joins, matching or not: rows
+//  - joins that do not match, nor in a common basis: the boundary rows of both sides; smooth joins:
+//  rows
 //    0..1 for tangents and almost tangents, rows 0..2 for curvature (continuity);
 //  - knot lines smoother than their basis, wraps included: functions_rough_at (continuity);
 //  - collapsed sides with a tangent plane, or nearly: rows 0..1 (continuity). A pole's curvature is

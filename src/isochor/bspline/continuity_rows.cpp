@@ -6,6 +6,7 @@
 
 #include "isochor/base/tolerance.h"
 #include "isochor/bspline/coarse_grids.h"
+#include "isochor/bspline/common_rows.h"
 #include "isochor/bspline/pole_rows.h"
 #include "isochor/bspline/smooth_relations.h"
 
@@ -144,7 +145,9 @@ class RowMaker {
   };
 
   std::vector<Place> places(const SmoothRelation& relation) const {
-    if (relation.kind != Kind::kJoin) return {{relation.patch, relation.across, false}};
+    if (relation.kind != Kind::kJoin && relation.kind != Kind::kTie) {
+      return {{relation.patch, relation.across, false}};
+    }
     const Join& join = model_.joins[static_cast<size_t>(relation.join)];
     return {{join.a.patch, across_direction(join.a.side), false},
             {join.b.patch, across_direction(join.b.side), join.opposed}};
@@ -207,7 +210,40 @@ class RowMaker {
     });
   }
 
+  // A line whose strips have different bases along it. The boundary rows of its strips are not one,
+  // but one curve.
+  bool add_common(int k, const SmoothRelation& relation) {
+    join_ = &model_.joins[static_cast<size_t>(relation.join)];
+    const std::vector<Place> at = places(relation);
+    internal::CommonRows common(model_, *join_, &grids_);
+    const double noise = std::max(kSameRow, 2.0 * relation.residual);
+    for (const std::vector<LineEquation>& equations : relation.equations) {
+      LineEquation shared = equations.front();
+      if (relation.kind == Kind::kTie) {
+        for (LineTerm& term : shared) {
+          const Place& place = at[static_cast<size_t>(term.strip)];
+          const int last = grids_.coarse(place.patch, place.across).size() - 1;
+          term.row = std::min(term.row, last);
+        }
+      } else {
+        shared = coarsened(at, shared);
+        order_across(&shared);
+        if (!shared.empty()) pool_.share(&shared, noise);
+      }
+      for (int c = 0; c < common.size(); ++c) {
+        ContinuityRow row;
+        row.relation = k;
+        row.terms = common.row(shared, c);
+        if (!row.terms.empty()) result_.rows.push_back(std::move(row));
+      }
+    }
+    return true;
+  }
+
   bool add_line(int k, const SmoothRelation& relation) {
+    if (relation.join >= 0 && model_.joins[static_cast<size_t>(relation.join)].common) {
+      return add_common(k, relation);
+    }
     join_ =
         relation.kind == Kind::kJoin ? &model_.joins[static_cast<size_t>(relation.join)] : nullptr;
     const std::vector<Place> at = places(relation);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -386,7 +387,13 @@ Join measure_join(const PatchModel& model, const std::vector<Vec3>& at, const Si
   return measure(model, at, point_classes(model), diagonal(model), a, b, opposed);
 }
 
+Join measure_join(const PatchModel& model, double size, const SideRef& a, const SideRef& b,
+                  bool opposed) {
+  return measure(model, model.points, point_classes(model), size, a, b, opposed);
+}
+
 double join_gap(const PatchModel& model, const std::vector<Vec3>& at, const Join& join) {
+  if (join.common) return measure_join(model, at, join).max_gap;
   const Surface surface_a = model.surface(join.a.patch, at);
   const Surface surface_b = model.surface(join.b.patch, at);
   const SideCurve a(surface_a, join.a.side, 1.0);
@@ -456,10 +463,16 @@ Closure closure(const PatchModel& model) {
   const PointClasses classes = point_classes(model);
   const std::vector<Join> joins = model.joins.empty() ? find_joins(model) : model.joins;
   std::map<std::pair<int, Side>, int> uses;
+  std::set<std::pair<int, Side>> in_parts;
   Closure result;
   for (const Join& join : joins) {
-    ++uses[{join.a.patch, join.a.side}];
-    ++uses[{join.b.patch, join.b.side}];
+    for (const auto& [ref, part] : {std::pair(join.a, join.part_a), {join.b, join.part_b}}) {
+      if (part.whole()) {
+        ++uses[{ref.patch, ref.side}];
+      } else {
+        in_parts.insert({ref.patch, ref.side});
+      }
+    }
     const int senses = sense_of(patch_of(model, join.a), join.a.side) *
                        sense_of(patch_of(model, join.b), join.b.side) * (join.opposed ? -1 : 1);
     if (senses > 0) {
@@ -470,7 +483,7 @@ Closure closure(const PatchModel& model) {
   for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
     const Patch& patch = model.patches[static_cast<size_t>(q)];
     for (Side side : kSides) {
-      const int count = uses[{q, side}];
+      const int count = uses[{q, side}] + static_cast<int>(in_parts.count({q, side}));
       if (count > 1) result.overused_sides.push_back(label_of(model, {q, side}));
       if (count == 0 && !is_collapsed(patch, side, classes) &&
           !folded_onto_itself(patch, side, classes)) {

@@ -9,7 +9,8 @@
 //  (1) find_joins finds each pair of sides whose boundary points are the same (same indices or
 //      ties), and nothing else;
 //  (2) measures are symmetric in the two sides, and independent of the parametrisation;
-//  (3) a join matches exactly when tying its poles one to one keeps the gap whatever they do.
+//  (3) a join matches exactly when tying its poles one to one keeps the gap whatever they do; it is
+//      `common` when equations between the coefficients of a common basis do.
 #pragma once
 
 #include <string>
@@ -46,11 +47,23 @@ Join measure_join(const PatchModel& model, const SideRef& a, const SideRef& b, b
 // The same with other positions of the points (a certificate after an edit).
 Join measure_join(const PatchModel& model, const std::vector<Vec3>& at, const SideRef& a,
                   const SideRef& b, bool opposed);
+// The same with `size` in place of the model's diagonal: for patches cut out of a larger model.
+Join measure_join(const PatchModel& model, double size, const SideRef& a, const SideRef& b,
+                  bool opposed);
+// A join that is known, measured again: in its common basis where it has one.
+Join measure_join(const PatchModel& model, const std::vector<Vec3>& at, const Join& join);
+
+// Measures parts of two sides in their common basis (common_basis.h). `common` is set when they are
+// the same curve there, pole by pole within kCoincident; else `mismatch` says why not.
+Join measure_common_join(const PatchModel& model, const std::vector<Vec3>& at, const SideRef& a,
+                         const SidePart& part_a, const SideRef& b, const SidePart& part_b,
+                         bool opposed);
 // The largest distance between the two sides only, which is much cheaper.
 double join_gap(const PatchModel& model, const std::vector<Vec3>& at, const Join& join);
 
 // Whether the patches close up: each side is used exactly twice, in opposite senses.
-// Collapsed sides need no partner, nor does a side that is folded onto itself.
+// Collapsed sides need no partner, nor does a side that is folded onto itself. Joins of parts of
+// sides count as partners of both.
 struct Closure {
   bool closed = false;
   std::vector<std::string> open_sides;         // "side v1 of face:3 (\"top\")"

@@ -253,6 +253,7 @@ void update_joins(const PatchModel& before, PatchModel* model, const Insertions&
   const PointClasses classes_before = point_classes(before);
   const PointClasses classes = point_classes(*model);
   for (Join& join : model->joins) {
+    if (join.common) continue;  // of whatever bases the two sides have
     bool touched = false;
     for (const SideRef& ref : {join.a, join.b}) {
       for (Direction direction : {Direction::kU, Direction::kV}) {
@@ -260,7 +261,7 @@ void update_joins(const PatchModel& before, PatchModel* model, const Insertions&
       }
     }
     if (!touched) continue;
-    const Join now = measure_join(*model, join.a, join.b, join.opposed);
+    const Join now = measure_join(*model, model->points, join);
     ISOCHOR_REQUIRE(now.matching || !join.matching, now.mismatch);
     ISOCHOR_REQUIRE(!join.matching || rows_tied(*model, join, classes) ||
                         !rows_tied(before, join, classes_before),

@@ -68,13 +68,27 @@ enum class Smoothness {
 };
 const char* name_of(Smoothness smoothness);  // "C0", "almost G1", "G1", "G2"
 
-// Two sides that carry the same curve (both sides may belong to one patch: a seam).
+// A part of a side: the interval of its running parameter, from < to; equal: the whole side.
+struct SidePart {
+  double from = 0.0, to = 0.0;
+  bool whole() const { return from == to; }
+  friend bool operator==(const SidePart& a, const SidePart& b) {
+    return a.from == b.from && a.to == b.to;
+  }
+};
+
+// Two sides, or parts of them, that carry the same curve (both sides may belong to one patch: a
+// seam).
 struct Join {
   SideRef a, b;
+  SidePart part_a = {}, part_b = {};
   bool opposed = false;   // the running parameters go in opposite directions
   bool matching = false;  // same degree, knots and weights along the curve: poles tie one to one
   std::string mismatch;   // when not matching: why, in words
-  double max_gap = 0.0;   // length unit
+  // Not matching, but the same curve once both are written in a common basis (common_basis.h): then
+  // an equation for each coefficient there keeps the two together.
+  bool common = false;
+  double max_gap = 0.0;             // length unit
   double max_angle_rad = 0.0;       // between the normals
   double max_curvature_jump = 0.0;  // 1 / length unit
   Smoothness smoothness = Smoothness::kSharp;
@@ -93,14 +107,16 @@ struct LineTerm {
 using LineEquation = std::vector<LineTerm>;
 
 struct SmoothRelation {
-  enum class Kind { kJoin, kKnotLine, kWrap, kPole };
+  // kTie: not smoothness, but what it rests on: the sides of a join in different bases stay
+  // together.
+  enum class Kind { kJoin, kKnotLine, kWrap, kPole, kTie };
   Kind kind = Kind::kJoin;
-  int join = -1;   // kJoin, kWrap: index into model.joins
+  int join = -1;   // kJoin, kWrap, kTie: index into model.joins
   int patch = -1;  // kKnotLine, kWrap: the patch; the line is `across` = knot
   Direction across = Direction::kU;
   double knot = 0.0;
-  std::vector<SideRef> sides;  // kJoin: its two sides; kPole: all collapsed sides at the pole
-  int order = 1;               // 1: tangents, 2: curvature too (seams: as protected_order)
+  std::vector<SideRef> sides;  // kJoin, kTie: its two sides; kPole: all collapsed sides at the pole
+  int order = 1;  // 0: positions (kTie), 1: tangents, 2: curvature too (seams: as protected_order)
   Rational lambda = Rational(1), mu;
   double residual = 0.0;  // of the worse of the relations, as a part of its terms
   std::string text;       // "face:3 and face:4 meet smoothly (G1)"
@@ -116,6 +132,7 @@ struct LockedSide {
   SideRef side;
   std::string reason;  // "shares an edge with face:5 (plane), which is not edited"
   Smoothness smoothness = Smoothness::kSharp;  // towards that neighbour
+  SidePart part = {};                          // where; the rest of the side stays free
 };
 
 // A point that must not move (all axes), and why, in words a designer understands.

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "isochor/bspline/common_basis.h"
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/line_strips.h"
@@ -53,9 +54,33 @@ class RelationFinder {
     }
   }
 
+  // The two sides of a join in different bases move as one curve.
+  void add_tie(int k) {
+    const Join& join = model_.joins[static_cast<size_t>(k)];
+    SmoothRelation relation;
+    relation.kind = SmoothRelation::Kind::kTie;
+    relation.join = k;
+    relation.sides = {join.a, join.b};
+    relation.order = 0;
+    relation.lambda = Rational();
+    relation.text = label_of(patch_of(model_, join.a.patch)) + " and " +
+                    label_of(patch_of(model_, join.b.patch)) +
+                    " share an edge in different bases, tied in a common one";
+    const auto boundary = [&](const SideRef& ref) {
+      return is_begin_side(ref.side)
+                 ? 0
+                 : knots_of(patch_of(model_, ref.patch), across_direction(ref.side)).size() - 1;
+    };
+    relation.equations = {
+        {{{0, boundary(join.a), Rational(1)}, {1, boundary(join.b), Rational(-1)}}}};
+    relations_.push_back(std::move(relation));
+  }
+
   void add_join(int k) {
     const Join& join = model_.joins[static_cast<size_t>(k)];
-    if (!join.matching || join.smoothness < Smoothness::kTangent) return;
+    if (!join.matching && !join.common) return;
+    if (join.common) add_tie(k);
+    if (join.smoothness < Smoothness::kTangent) return;
     SmoothRelation relation;
     relation.kind = SmoothRelation::Kind::kJoin;
     relation.join = k;
@@ -72,7 +97,31 @@ class RelationFinder {
                         ? a + " meets itself " + smoothly(relation.order) + " at its seam"
                         : a + " and " + label_of(patch_of(model_, join.b.patch)) + " meet " +
                               smoothly(relation.order);
-    add(std::move(relation), internal::join_line(model_, join));
+    if (join.common) {
+      add_common(std::move(relation), join);
+    } else {
+      add(std::move(relation), internal::join_line(model_, join));
+    }
+  }
+
+  // Measured on the strips refined to the common basis. Nothing across the line changes by that, so
+  // the equations are those of the model's own rows; they have to be the same all along.
+  void add_common(SmoothRelation relation, const Join& join) {
+    const std::optional<CommonPair> pair = common_pair(model_, model_.points, join);
+    if (!pair) return;
+    Join refined;
+    refined.a = pair->a;
+    refined.b = pair->b;
+    std::vector<Rational> factors = factors_;
+    if (!internal::fit_relation(pair->model, internal::join_line(pair->model, refined), &relation,
+                                &factors)) {
+      return;
+    }
+    for (const auto& equations : relation.equations) {
+      if (equations.size() != 1) return;
+    }
+    factors_ = std::move(factors);
+    relations_.push_back(std::move(relation));
   }
 
   void add_wrap(int k) {

@@ -11,8 +11,12 @@
 // relations leaves their residuals as they are, and with them the angle and the curvature jump.
 // Coefficient by coefficient in b_j that is one equation per j and relation:
 //     sum_i k_i w_ij delta_ij = 0.
-// lambda and mu are geometry: measured on the poles and taken as the simplest rationals within the
-// noise. rho and sigma follow from the weights, so that sum_i k_i w_ij = 0 exactly.
+// Where the strips have different bases along the line (joins that are `common`), the numerators
+// are written in the common basis C_c first: sum_i k_i sum_j M(c,j) w_ij delta_ij = 0 for each c.
+// The positions of the two sides then need equations, too (Kind::kTie): the same with k = 1 for the
+// one boundary row and k = -1 for the other. lambda and mu are geometry: measured on the poles and
+// taken as the simplest rationals within the noise. rho and sigma follow from the weights, so that
+// sum_i k_i w_ij = 0 exactly.
 //
 // At a pole with a tangent plane the second row must stay an affine image of itself (see
 // continuity_rows).
@@ -36,8 +40,9 @@
 
 namespace isochor {
 
-// The relations that fit: for each smooth join that matches, each knot line and wrap that is
-// smoother than its basis, each pole with a tangent plane. Uses model.joins as they are.
+// The relations that fit: for each join in a common basis its tie; for each smooth join that
+// matches or has a common basis, each knot line and wrap that is smoother than its basis, each pole
+// with a tangent plane. Uses model.joins as they are.
 std::vector<SmoothRelation> smooth_relations(const PatchModel& model);
 
 // The points that have to stay when the relation has no rows (what derive_locks locks for it).
@@ -69,8 +74,9 @@ struct ContinuityRows {
 //
 // With g_a = sum_i k_i w_i U_ia the fine rows hold for all j when g . c_b = 0 for each coarse b
 // along the line: one row for each b. Relations that the coarse functions fulfil by themselves give
-// none. Where weights do not separate, the line must not be coarsened along its own direction.
-// PreconditionError when `coarse` does not fit the model.
+// none. Where weights do not separate, the line must not be coarsened along its own direction. In a
+// common basis the rows are those of the coarse functions, where weights along the line are
+// constant. PreconditionError when `coarse` does not fit the model.
 ContinuityRows continuity_rows(const PatchModel& model,
                                const std::vector<SmoothRelation>& relations,
                                const std::vector<CoarseKnots>& coarse);

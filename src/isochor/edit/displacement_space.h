@@ -139,6 +139,8 @@ class DisplacementSpace {
   void choose_relations(const PatchModel& model, const Options& options);
   std::vector<ContinuityRow> stated_relations(const PatchModel& model);
   void make_kept_rows(const std::vector<ContinuityRow>& rows, bool mirrored);
+  void link_tied_curves();
+  void drop_rows_implied_by_ties();
   CoefficientRow combination(const std::vector<GridTerm>& terms) const;
   void drop_mirrored_rows();
   void lock_coefficient(int c, unsigned axes, const std::string& reason);

@@ -39,7 +39,7 @@ SkinGauge::SkinGauge(const PatchModel& rest)
     : rest_(rest), size_(diagonal(rest)), patches_(rest.patches.size()) {
   // Not those that the model carries: an edit that kept positions only has left them behind.
   for (const Join& join : rest.joins) {
-    joins_.push_back(measure_join(rest, join.a, join.b, join.opposed));
+    joins_.push_back(measure_join(rest, rest.points, join));
   }
 }
 
@@ -81,7 +81,7 @@ SkinMeasures SkinGauge::measure(const std::vector<Vec3>& points, const std::vect
     const bool touched =
         moved[static_cast<size_t>(stated.a.patch)] || moved[static_cast<size_t>(stated.b.patch)];
     const Join after =
-        touched ? measure_join(rest_, points, stated.a, stated.b, stated.opposed) : before;
+        touched ? measure_join(rest_, points, stated) : before;
     ++all.count;
     raise(all.max_gap, after.max_gap);
     raise(all.max_angle_rad, after.max_angle_rad);

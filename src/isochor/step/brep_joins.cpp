@@ -15,6 +15,7 @@
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/refinement.h"
+#include "isochor/exact/simplest_rational.h"
 
 namespace isochor::internal {
 namespace {
@@ -51,6 +52,7 @@ class Builder {
     bool found = false;
     bool whole = false;
     SideRef ref;
+    SidePart part;  // of the side, where the edge runs; the default when it is whole
   };
 
   FaceRecord& record(int face) { return table_.faces[static_cast<size_t>(face)]; }
@@ -63,10 +65,15 @@ class Builder {
   // The lock of one of two sites, caused by the other one.
   void lock_towards(size_t edge, const EdgeSite& at, const EdgeSite& other);
   void join(const SideRef& a, const SideRef& b, bool opposed);
+  bool join_in_common(const SiteSide& a, const SiteSide& b, bool opposed, const std::string& bases);
+  void tie_ends(const Join& join);
+  SidePart part_of(const EdgeSite& site, const SideRef& ref);
+  void lock_side(const SiteSide& side, const std::string& reason, Smoothness smoothness);
   void lock_side(const SideRef& side, const std::string& reason, Smoothness smoothness);
   void tie_wrapped_rows(int q, Direction direction);
   bool runs_up(const EdgeSite& site, Side side);
   void relate_corners();
+  bool on_side(int face, const EdgeUse& use) const;
   void collect_corners(int face, TopTools_IndexedMapOfShape& vertices);
   void add_corner(size_t vertex, int q, bool u_end, bool v_end);
   void judge_corner(int vertex, const PointClasses& classes);
@@ -74,7 +81,8 @@ class Builder {
   BrepTable& table_;
   const std::vector<EdgeFacts>& facts_;
   PatchModel model_;
-  std::vector<int> face_of_;  // of each patch
+  std::vector<int> face_of_;                                  // of each patch
+  std::map<std::pair<int, Side>, std::vector<double>> ends_;  // of parts of sides, met so far
   // Per vertex: the points the corners there depend on, those of them that are the corner, and the
   // faces that touch the vertex elsewhere.
   std::vector<std::vector<int>> corner_support_, corner_points_;
@@ -127,16 +135,47 @@ Builder::SiteSide Builder::side_at(const EdgeSite& site) {
     const SideCover& cover = face.trim.sides[s];
     if (!cover.covered || cover.collapsed) continue;
     for (const UseRef& use : cover.uses) {
-      if (use.loop == site.loop && use.use == site.use) {
-        return {true, cover.whole(), {face.patch, kSides[s]}};
-      }
+      if (use.loop != site.loop || use.use != site.use) continue;
+      result = {true, cover.whole(), {face.patch, kSides[s]}, {}};
+      if (!result.whole) result.part = part_of(site, result.ref);
+      return result;
     }
   }
   return result;
 }
 
+// The running parameters of an edge's ends. Ends of edges that follow each other must be the same
+// number: they snap to knots, else to the simplest fraction of the domain within rounding.
+SidePart Builder::part_of(const EdgeSite& site, const SideRef& ref) {
+  const EdgeUse& use = table_.use(site);
+  const KnotVector& knots = knots_of(patch(ref.patch), running_direction(ref.side));
+  const double length = knots.end() - knots.begin();
+  const auto snapped = [&](const gp_Pnt2d& at) {
+    const double t = is_u_side(ref.side) ? at.Y() : at.X();
+    for (double knot : knots.breaks()) {
+      if (std::abs(t - knot) <= kSideNoise * length) return knot;
+    }
+    std::vector<double>& known = ends_[{ref.patch, ref.side}];
+    for (double end : known) {
+      if (std::abs(t - end) <= kSideNoise * length) return end;
+    }
+    const Rational share((t - knots.begin()) / length);
+    const Rational noise(kSameKnot);
+    const Rational simple = simplest_between(share - noise, share + noise);
+    known.push_back((Rational(knots.begin()) + simple * Rational(length)).to_double());
+    return known.back();
+  };
+  const double a = snapped(use.curve->Value(use.first));
+  const double b = snapped(use.curve->Value(use.last));
+  return {std::min(a, b), std::max(a, b)};
+}
+
+void Builder::lock_side(const SiteSide& side, const std::string& reason, Smoothness smoothness) {
+  model_.locked_sides.push_back({side.ref, reason, smoothness, side.part});
+}
+
 void Builder::lock_side(const SideRef& side, const std::string& reason, Smoothness smoothness) {
-  model_.locked_sides.push_back({side, reason, smoothness});
+  model_.locked_sides.push_back({side, reason, smoothness, {}});
 }
 
 // The seam of a periodic direction: pole rows i and i + N are the same rows.
@@ -183,6 +222,10 @@ void Builder::join(const SideRef& a, const SideRef& b, bool opposed) {
       if (p != q) model_.ties.emplace_back(p, q);
     }
   }
+  if (!join.matching && !wraps &&
+      join_in_common({true, true, a, {}}, {true, true, b, {}}, opposed, join.mismatch)) {
+    return;
+  }
   if (!join.matching) {
     const auto reason = [&](const SideRef& other) {
       return "does not match side " + std::string(name_of(other.side)) + " of " +
@@ -194,6 +237,37 @@ void Builder::join(const SideRef& a, const SideRef& b, bool opposed) {
   model_.joins.push_back(std::move(join));
 }
 
+// Ties the poles at both ends of a join, where those are ends of both sides.
+void Builder::tie_ends(const Join& join) {
+  const auto end_point = [&](const SideRef& ref, const SidePart& part, bool last) {
+    const KnotVector& knots = knots_of(patch(ref.patch), running_direction(ref.side));
+    const bool at_end =
+        part.whole() || (last ? part.to == knots.end() : part.from == knots.begin());
+    const bool clamped = last ? knots.clamped_end() : knots.clamped_begin();
+    if (!at_end || !clamped) return -1;
+    const auto row = side_indices(patch(ref.patch), ref.side);
+    const auto& [i, j] = last ? row.back() : row.front();
+    return patch(ref.patch).point(i, j);
+  };
+  for (bool last : {false, true}) {
+    const int p = end_point(join.a, join.part_a, last);
+    const int q = end_point(join.b, join.part_b, last != join.opposed);
+    if (p >= 0 && q >= 0 && p != q) model_.ties.emplace_back(p, q);
+  }
+}
+
+// `bases`: how the two sides differ, in words. False when they do not carry one curve.
+bool Builder::join_in_common(const SiteSide& a, const SiteSide& b, bool opposed,
+                             const std::string& bases) {
+  if (a.ref == b.ref) return false;
+  Join join = measure_common_join(model_, model_.points, a.ref, a.part, b.ref, b.part, opposed);
+  if (!join.common) return false;
+  join.mismatch = bases;
+  tie_ends(join);
+  model_.joins.push_back(std::move(join));
+  return true;
+}
+
 void Builder::lock_towards(size_t edge, const EdgeSite& at, const EdgeSite& other) {
   const SiteSide side = side_at(at);
   if (!side.found) return;  // a trimming edge: the trim locks what it touches
@@ -201,13 +275,14 @@ void Builder::lock_towards(size_t edge, const EdgeSite& at, const EdgeSite& othe
   const std::string name = table_.label(other.face);
   const Smoothness smoothness = facts_[edge].smoothness;
   if (record(other.face).patch < 0) {
-    lock_side(side.ref, "shares an edge with " + name + ", which is not edited", smoothness);
+    lock_side(side, "shares an edge with " + name + ", which is not edited", smoothness);
   } else if (!theirs.found) {
-    lock_side(side.ref, "meets the trimmed edge of " + name, smoothness);
+    lock_side(side, "meets the trimmed edge of " + name, smoothness);
   } else if (!theirs.whole) {
-    lock_side(side.ref, "meets only a part of a side of " + name, smoothness);
+    lock_side(side, "meets only a part of a side of " + name + ", which runs otherwise",
+              smoothness);
   } else {
-    lock_side(side.ref, "is shared by several faces, among them " + name, smoothness);
+    lock_side(side, "is shared by several faces, among them " + name, smoothness);
   }
 }
 
@@ -221,6 +296,10 @@ void Builder::relate_two(size_t edge, const EdgeSite& a, const EdgeSite& b) {
       join(side_a.ref, side_b.ref, runs_up(a, side_a.ref.side) != runs_up(b, side_b.ref.side));
     }
     return;
+  }
+  if (side_a.found && side_b.found) {
+    const bool opposed = runs_up(a, side_a.ref.side) != runs_up(b, side_b.ref.side);
+    if (join_in_common(side_a, side_b, opposed, "a part of a side")) return;
   }
   lock_towards(edge, a, b);
   lock_towards(edge, b, a);
@@ -239,11 +318,27 @@ void Builder::relate_edge(size_t edge) {
     if (entry.sites.size() > 2) {
       std::vector<std::string> names;
       for (const EdgeSite& other : entry.sites) names.push_back(table_.label(other.face));
-      lock_side(side.ref, "is an edge of more than two faces: " + list(names), Smoothness::kSharp);
+      lock_side(side, "is an edge of more than two faces: " + list(names), Smoothness::kSharp);
     } else if (!side.whole) {
-      lock_side(side.ref, "is cut into several edges", Smoothness::kSharp);
+      lock_side(side, "is cut into several edges", Smoothness::kSharp);
     }
   }
+}
+
+// Whether a use starts on a side of a patch: the edges before and after it, parts of that side, are
+// tied or locked then, and with them the vertex.
+bool Builder::on_side(int face, const EdgeUse& use) const {
+  const FaceRecord& entry = table_.faces[static_cast<size_t>(face)];
+  if (entry.patch < 0) return false;
+  for (const SideCover& cover : entry.trim.sides) {
+    if (!cover.covered || cover.collapsed) continue;
+    for (const UseRef& ref : cover.uses) {
+      if (&entry.loops[static_cast<size_t>(ref.loop)].uses[static_cast<size_t>(ref.use)] == &use) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 // Finds out, for each vertex of a face, whether it is a corner of the patch.
@@ -278,7 +373,11 @@ void Builder::collect_corners(int face, TopTools_IndexedMapOfShape& vertices) {
         add_corner(index, entry.patch, u_end, v_end);
         at_corner = true;
       }
-      (at_corner ? corner_faces_ : other_faces_)[index].insert(face);
+      if (at_corner) {
+        corner_faces_[index].insert(face);
+      } else if (!on_side(face, use)) {
+        other_faces_[index].insert(face);
+      }
     }
   }
 }

@@ -3,8 +3,10 @@
 #include <BRep_Tool.hxx>
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_Curve.hxx>
+#include <GeomConvert.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
+#include <Geom_Line.hxx>
 #include <Geom_TrimmedCurve.hxx>
 #include <TColStd_Array1OfReal.hxx>
 #include <algorithm>
@@ -111,6 +113,50 @@ bool same_basis(const Geom_BSplineCurve& a, const Geom_BSplineCurve& b) {
   return true;
 }
 
+// A copy without weights that can be refined; null when there is none with the same parameter.
+Handle(Geom_BSplineCurve) as_spline(const Handle(Geom_Curve) & curve, double first, double last) {
+  Handle(Geom_BSplineCurve) spline;
+  if (!Handle(Geom_Line)::DownCast(curve).IsNull()) {
+    spline = GeomConvert::CurveToBSplineCurve(new Geom_TrimmedCurve(curve, first, last));
+  } else if (!Handle(Geom_BSplineCurve)::DownCast(curve).IsNull()) {
+    spline = Handle(Geom_BSplineCurve)::DownCast(curve->Copy());
+  }
+  if (spline.IsNull() || spline->IsRational() || spline->IsPeriodic()) return {};
+  return spline;
+}
+
+void insert_knots_of(const Geom_BSplineCurve& other, double near, Geom_BSplineCurve& curve) {
+  for (int k = 2; k < other.NbKnots(); ++k) {
+    curve.InsertKnot(other.Knot(k), other.Multiplicity(k), near, Standard_False);
+  }
+}
+
+// Both curves on [first, last] in the coarsest basis that holds them; false when there is none.
+bool bring_to_common_basis(Geom_BSplineCurve& a, Geom_BSplineCurve& b, double first, double last) {
+  if (b.IsRational() || b.IsPeriodic()) return false;
+  const double near = kSameParameter * (last - first);
+  for (Geom_BSplineCurve* curve : {&a, &b}) {
+    if (curve->FirstParameter() > first + near || curve->LastParameter() < last - near) {
+      return false;
+    }
+    const double from = std::max(first, curve->FirstParameter());
+    const double to = std::min(last, curve->LastParameter());
+    if (from > curve->FirstParameter() || to < curve->LastParameter()) curve->Segment(from, to);
+  }
+  const int degree = std::max(a.Degree(), b.Degree());
+  a.IncreaseDegree(degree);
+  b.IncreaseDegree(degree);
+  insert_knots_of(b, near, a);
+  insert_knots_of(a, near, b);
+  if (a.NbPoles() != b.NbPoles() || a.NbKnots() != b.NbKnots()) return false;
+  for (int k = 1; k <= a.NbKnots(); ++k) {
+    if (a.Multiplicity(k) != b.Multiplicity(k) || std::abs(a.Knot(k) - b.Knot(k)) > near) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Displacement::Displacement(const TopoDS_Face& face, const Surface& before, const Surface& after)
@@ -188,11 +234,17 @@ Handle(Geom_Curve) Displacement::new_curve(const TopoDS_Edge& edge, const IsoRun
   Handle(Geom_Curve) old = BRep_Tool::Curve(edge, location, first, last);
   const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(old);
   if (!trimmed.IsNull()) old = trimmed->BasisCurve();
+  if (!location.IsEqual(location_)) return iso_curve(after_, run);
   auto curve = Handle(Geom_BSplineCurve)::DownCast(old);
-  if (curve.IsNull() || !location.IsEqual(location_) || !same_basis(*curve, *shift)) {
-    return iso_curve(after_, run);
+  if (curve.IsNull() || !same_basis(*curve, *shift)) {
+    curve = as_spline(old, first, last);
+    // The edge of two faces in different bases, or of a part of a side: both curves in one basis.
+    if (curve.IsNull() || !bring_to_common_basis(*curve, *shift, first, last)) {
+      return iso_curve(after_, run);
+    }
+  } else {
+    curve = Handle(Geom_BSplineCurve)::DownCast(curve->Copy());
   }
-  curve = Handle(Geom_BSplineCurve)::DownCast(curve->Copy());
   for (int k = 1; k <= curve->NbPoles(); ++k) {
     const gp_Pnt d = shift->Pole(k);
     if (is_noise(Vec3(d.X(), d.Y(), d.Z()))) continue;

@@ -23,13 +23,17 @@ void transfer(Io& io, SideRef& f) {
   io(f.patch, f.side);
 }
 template <typename Io>
+void transfer(Io& io, SidePart& f) {
+  io(f.from, f.to);
+}
+template <typename Io>
 void transfer(Io& io, Join& f) {
-  io(f.a, f.b, f.opposed, f.matching, f.mismatch, f.max_gap, f.max_angle_rad, f.max_curvature_jump,
-     f.smoothness);
+  io(f.a, f.b, f.part_a, f.part_b, f.opposed, f.matching, f.mismatch, f.common, f.max_gap,
+     f.max_angle_rad, f.max_curvature_jump, f.smoothness);
 }
 template <typename Io>
 void transfer(Io& io, LockedSide& f) {
-  io(f.side, f.reason, f.smoothness);
+  io(f.side, f.reason, f.smoothness, f.part);
 }
 template <typename Io>
 void transfer(Io& io, Lock& f) {
