@@ -60,8 +60,14 @@ void print_patches(const LoadedModel& loaded, const Common& common) {
 void print_relations(const PatchModel& model, const Common& common) {
   if (model.relations.empty()) return;
   std::map<std::string, int> sentences;
-  for (const SmoothRelation& relation : model.relations) ++sentences[relation.text];
-  print(common, format("kept smooth by equations: %zu", model.relations.size()));
+  size_t smooth = 0;
+  for (const SmoothRelation& relation : model.relations) {
+    if (relation.order == 0) continue;  // a tie in a common basis: listed with the joins
+    ++sentences[relation.text];
+    ++smooth;
+  }
+  if (smooth == 0) return;
+  print(common, format("kept smooth by equations: %zu", smooth));
   for (const auto& [text, count] : sentences) {
     const std::string times = count > 1 ? format(" (%d times)", count) : "";
     print(common, format("  %s%s", text.c_str(), times.c_str()));

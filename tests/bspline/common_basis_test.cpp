@@ -91,7 +91,7 @@ TEST(CommonBasis, HoldsBothCurvesExactly) {
 TEST(CommonBasis, CutsOutParts) {
   const KnotVector longer(3, {0, 0, 0, 0, 0.5, 0.5, 1.25, 2, 2, 2, 2});
   const KnotVector shorter(2, {0, 0, 0, 0.5, 1, 1, 1});
-  for (const SidePart& part : {SidePart{0.0, 0.5}, {0.5, 2.0}, {0.375, 1.5}, {1.25, 1.5}}) {
+  for (const SidePart& part : {SidePart{0.0, 0.5}, {0.5, 2.0}, {0.375, 1.375}, {1.25, 1.5}}) {
     expect_laws({longer, longer, part, false}, whole(shorter, true));
     expect_laws({longer, longer, part, true}, {shorter, shorter, {0.25, 0.75}, false});
   }
@@ -265,7 +265,7 @@ TEST(CommonJoins, OtherCurvesAreNotTied) {
   EXPECT_NE(join.mismatch.find("apart"), std::string::npos) << join.mismatch;
   model.joins = {join};
   derive_locks(model);
-  EXPECT_EQ(model.locks.size(), 5u + 6u + (5u + 6u) * 2u);  // and rows for almost smooth joins
+  EXPECT_EQ(model.locks.size(), 2u * (5u + 6u));  // almost smooth: the next rows, too
 }
 
 TEST(CommonJoins, ScalesKeepTheEdgeToo) {

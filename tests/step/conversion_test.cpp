@@ -12,11 +12,13 @@
 #include <Geom_BezierCurve.hxx>
 #include <TColgp_Array1OfPnt.hxx>
 #include <TopExp.hxx>
+#include <cmath>
 #include <gp_Ax2.hxx>
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
 #include "isochor/step/flux.h"
+#include "isochor/step/occt_surface.h"
 
 namespace isochor::internal {
 namespace {
@@ -84,6 +86,53 @@ TEST(Conversion, ExtrudedCurveKeepsItsParameters) {
           kSameSurface * table.diagonal);
     }
   }
+}
+
+// A wavy surface over [0, 6] x [0, 4] in the plane, its parameters.
+Handle(Geom_BSplineSurface) wavy() {
+  const KnotVector u = KnotVector::uniform(3, 6, 0.0, 6.0), v = KnotVector::uniform(3, 4, 0.0, 4.0);
+  std::vector<Vec3> poles;
+  for (int i = 0; i < u.size(); ++i) {
+    for (int j = 0; j < v.size(); ++j) {
+      poles.emplace_back(u.greville(i), v.greville(j), 0.2 * std::sin(2.0 * i + j));
+    }
+  }
+  return to_occt(Surface(u, v, poles));
+}
+
+TEST(Conversion, BoxesOfParametersAreCutOut) {
+  const Handle(Geom_BSplineSurface) surface = wavy();
+  BrepTable table = table_of(BRepBuilderAPI_MakeFace(surface, 0.7, 4.0, 1.1, 3.3, 1e-9).Shape());
+  ASSERT_EQ(table.faces[0].trim.kind, TrimKind::kIsoBox);
+  const double before = volume_of(table);
+  cut_iso_boxes(table);
+  const FaceRecord& face = table.faces[0];
+  EXPECT_EQ(face.trim.kind, TrimKind::kNatural);
+  EXPECT_TRUE(face.trim.region.empty());
+  const Surface& part = *face.surface.surface;
+  EXPECT_EQ(part.u_knots().breaks(), (std::vector<double>{0.7, 1, 2, 3, 4}));
+  EXPECT_EQ(part.v_knots().breaks(), (std::vector<double>{1.1, 2, 3, 3.3}));
+  for (double u : {0.7, 1.9, 4.0}) {
+    for (double v : {1.1, 2.0, 3.3}) {
+      const gp_Pnt p = surface->Value(u, v);
+      EXPECT_LT((part.point(u, v) - Vec3(p.X(), p.Y(), p.Z())).norm(), 1e-14);
+    }
+  }
+  EXPECT_NEAR(volume_of(table), before, 1e-13);
+  // What an edit sends back is recognised by its domain.
+  const Surface whole = from_occt(*surface);
+  const auto again = cut_like(whole, part);
+  ASSERT_TRUE(again.has_value());
+  EXPECT_EQ(again->poles(), part.poles());
+  EXPECT_FALSE(cut_like(whole, whole).has_value());
+  EXPECT_FALSE(cut_like(part, whole).has_value());
+}
+
+TEST(Conversion, OtherTrimsStay) {
+  const Handle(Geom_BSplineSurface) surface = wavy();
+  BrepTable table = table_of(BRepBuilderAPI_MakeFace(surface, 1e-9).Shape());
+  cut_iso_boxes(table);
+  EXPECT_EQ(table.faces[0].surface.surface->poles(), from_occt(*surface).poles());
 }
 
 TEST(Conversion, DiscBoundedByOneCircleIsCoveredWhole) {

@@ -62,38 +62,6 @@ int count_of(const std::vector<Rational>& knots, const Rational& x) {
   return static_cast<int>(range.second - range.first);
 }
 
-// The homogeneous poles of a patch, refined along one direction.
-Surface refined_along(const Surface& surface, Direction along, const ExactMap& map,
-                      const KnotVector& knots) {
-  const bool along_u = along == Direction::kU;
-  const int lines = along_u ? surface.v_size() : surface.u_size();
-  const int count = knots.size();
-  const auto total = static_cast<size_t>(lines) * static_cast<size_t>(count);
-  std::vector<Vec3> poles(total, Vec3::Zero());
-  std::vector<double> weights(surface.rational() ? total : 0);
-  for (int i = 0; i < count; ++i) {
-    const ExactMapRow& row = map[static_cast<size_t>(i)];
-    std::vector<double> shares;
-    for (const Rational& share : row.coefficients) shares.push_back(share.to_double());
-    for (int line = 0; line < lines; ++line) {
-      Vec3 sum = Vec3::Zero();
-      double weight = 0.0;
-      for (size_t k = 0; k < shares.size(); ++k) {
-        const int j = row.first + static_cast<int>(k);
-        const size_t from = along_u ? surface.index(j, line) : surface.index(line, j);
-        const double w = shares[k] * (surface.rational() ? surface.weights()[from] : 1.0);
-        sum += w * surface.poles()[from];
-        weight += w;
-      }
-      const auto to = static_cast<size_t>(along_u ? i * lines + line : line * count + i);
-      poles[to] = surface.rational() ? Vec3(sum / weight) : sum;
-      if (surface.rational()) weights[to] = weight;
-    }
-  }
-  return along_u ? Surface(knots, surface.v_knots(), std::move(poles), std::move(weights))
-                 : Surface(surface.u_knots(), knots, std::move(poles), std::move(weights));
-}
-
 void add_patch(const PatchModel& model, const std::vector<Vec3>& at, int q, Direction along,
                const ExactMap& map, const KnotVector& knots, bool flipped, PatchModel* pair) {
   const Patch& patch = model.patches[static_cast<size_t>(q)];
@@ -198,6 +166,37 @@ ExactMapRow CommonBasis::row_of(const Curve& curve, int i) const {
       std::find_if(row.begin(), row.end(), [](const Rational& value) { return !value.is_zero(); });
   first += static_cast<int>(begin - row.begin());
   return {first, std::vector<Rational>(begin, row.end())};
+}
+
+Surface refined_along(const Surface& surface, Direction along, const ExactMap& map,
+                      const KnotVector& knots) {
+  const bool along_u = along == Direction::kU;
+  const int lines = along_u ? surface.v_size() : surface.u_size();
+  const int count = knots.size();
+  const auto total = static_cast<size_t>(lines) * static_cast<size_t>(count);
+  std::vector<Vec3> poles(total, Vec3::Zero());
+  std::vector<double> weights(surface.rational() ? total : 0);
+  for (int i = 0; i < count; ++i) {
+    const ExactMapRow& row = map[static_cast<size_t>(i)];
+    std::vector<double> shares;
+    for (const Rational& share : row.coefficients) shares.push_back(share.to_double());
+    for (int line = 0; line < lines; ++line) {
+      Vec3 sum = Vec3::Zero();
+      double weight = 0.0;
+      for (size_t k = 0; k < shares.size(); ++k) {
+        const int j = row.first + static_cast<int>(k);
+        const size_t from = along_u ? surface.index(j, line) : surface.index(line, j);
+        const double w = shares[k] * (surface.rational() ? surface.weights()[from] : 1.0);
+        sum += w * surface.poles()[from];
+        weight += w;
+      }
+      const auto to = static_cast<size_t>(along_u ? i * lines + line : line * count + i);
+      poles[to] = surface.rational() ? Vec3(sum / weight) : sum;
+      if (surface.rational()) weights[to] = weight;
+    }
+  }
+  return along_u ? Surface(knots, surface.v_knots(), std::move(poles), std::move(weights))
+                 : Surface(surface.u_knots(), knots, std::move(poles), std::move(weights));
 }
 
 CommonBasis common_basis(const PatchModel& model, const Join& join, const KnotVector& first,

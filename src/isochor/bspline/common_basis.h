@@ -62,6 +62,10 @@ class CommonBasis {
   std::vector<Rational> knots_;
 };
 
+// The surface on other knots along one direction, its homogeneous poles combined by `map`.
+Surface refined_along(const Surface& surface, Direction along, const ExactMap& map,
+                      const KnotVector& knots);
+
 // The common basis of a join at a scale: `first`, `second` are the knots along its sides.
 CommonBasis common_basis(const PatchModel& model, const Join& join, const KnotVector& first,
                          const KnotVector& second);

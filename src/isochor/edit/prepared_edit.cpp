@@ -321,7 +321,8 @@ void PreparedEdit::describe(Certificate& certificate) const {
     const bool touched = std::any_of(
         kept.row.coefficient.begin(), kept.row.coefficient.end(),
         [&](int c) { return extent_[static_cast<size_t>(c)] || sink_[static_cast<size_t>(c)]; });
-    if (touched) relations.insert(kept.relation);
+    const SmoothRelation& relation = space_.relations()[static_cast<size_t>(kept.relation)];
+    if (touched && relation.order > 0) relations.insert(kept.relation);
   }
   certificate.skin.relations = static_cast<int>(relations.size());
   std::map<std::pair<std::string, std::string>, int> locked;

@@ -80,8 +80,7 @@ SkinMeasures SkinGauge::measure(const std::vector<Vec3>& points, const std::vect
     const Join& before = joins_[static_cast<size_t>(k)];
     const bool touched =
         moved[static_cast<size_t>(stated.a.patch)] || moved[static_cast<size_t>(stated.b.patch)];
-    const Join after =
-        touched ? measure_join(rest_, points, stated) : before;
+    const Join after = touched ? measure_join(rest_, points, stated) : before;
     ++all.count;
     raise(all.max_gap, after.max_gap);
     raise(all.max_angle_rad, after.max_angle_rad);

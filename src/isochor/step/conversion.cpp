@@ -16,9 +16,12 @@
 #include <TColStd_Array2OfReal.hxx>
 #include <TColgp_Array2OfPnt.hxx>
 #include <algorithm>
+#include <cmath>
 
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
+#include "isochor/bspline/cut_box.h"
+#include "isochor/step/occt_surface.h"
 
 namespace isochor::internal {
 namespace {
@@ -119,6 +122,41 @@ double largest_deviation(const Geom_Surface& a, const Geom_Surface& b, const UvB
   return deviation;
 }
 
+// The box of a face's parameter curves, its sides moved to the knots they are meant to be. Nothing
+// for boxes that reach beyond the domain (across a seam).
+std::optional<UvBox> box_on_knots(const FaceRecord& face, const Surface& surface) {
+  std::vector<double> u, v;
+  for (const FaceLoop& loop : face.loops) {
+    for (const EdgeUse& use : loop.uses) {
+      if (use.curve.IsNull()) return std::nullopt;
+      for (const gp_Pnt2d& at : {use.start(), use.finish()}) {
+        u.push_back(at.X());
+        v.push_back(at.Y());
+      }
+    }
+  }
+  if (u.empty()) return std::nullopt;
+  const auto on_knot = [](double t, const KnotVector& knots) {
+    for (double knot : knots.breaks()) {
+      if (std::abs(t - knot) <= kSideNoise * (knots.end() - knots.begin())) return knot;
+    }
+    return t;
+  };
+  const auto [u_low, u_high] = std::minmax_element(u.begin(), u.end());
+  const auto [v_low, v_high] = std::minmax_element(v.begin(), v.end());
+  const UvBox box{on_knot(*u_low, surface.u_knots()), on_knot(*u_high, surface.u_knots()),
+                  on_knot(*v_low, surface.v_knots()), on_knot(*v_high, surface.v_knots())};
+  const auto fits = [](double low, double high, const KnotVector& knots) {
+    return knots.begin() <= low && high <= knots.end() &&
+           high - low > kSideSlack * (knots.end() - knots.begin());
+  };
+  if (!fits(box.u_min, box.u_max, surface.u_knots()) ||
+      !fits(box.v_min, box.v_max, surface.v_knots())) {
+    return std::nullopt;
+  }
+  return box;
+}
+
 bool has_circles(const std::string& kind) {
   return kind == "cylinder" || kind == "cone" || kind == "sphere" || kind == "torus" ||
          kind == "surface of revolution" || kind == "extruded surface";
@@ -161,6 +199,35 @@ Conversion convert_face(const FaceRecord& face, double diagonal) {
     result.refusal = "its B-spline form would be " + std::to_string(deviation) + " off";
   }
   return result;
+}
+
+std::optional<Surface> cut_like(const Surface& whole, const Surface& edited) {
+  const KnotVector &u = whole.u_knots(), &v = whole.v_knots();
+  const UvBox box{edited.u_knots().begin(), edited.u_knots().end(), edited.v_knots().begin(),
+                  edited.v_knots().end()};
+  const bool inside = u.begin() <= box.u_min && box.u_max <= u.end() && v.begin() <= box.v_min &&
+                      box.v_max <= v.end();
+  const bool same = u.begin() == box.u_min && box.u_max == u.end() && v.begin() == box.v_min &&
+                    box.v_max == v.end();
+  if (!inside || same) return std::nullopt;
+  return cut_box(whole, box);
+}
+
+void cut_iso_boxes(BrepTable& table) {
+  const double distance = kSideDistance * table.diagonal;
+  for (FaceRecord& face : table.faces) {
+    if (!face.surface.surface || face.trim.kind != TrimKind::kIsoBox) continue;
+    const Surface& whole = *face.surface.surface;
+    const std::optional<UvBox> box = box_on_knots(face, whole);
+    if (!box) continue;
+    const Surface part = cut_box(whole, *box);
+    const Handle(Geom_BSplineSurface) geometry = to_occt(part);
+    const FaceTrim trim = classify_trim(geometry, face.loops, distance);
+    if (trim.kind != TrimKind::kNatural) continue;
+    face.surface.surface = part;
+    face.surface.geometry = geometry;
+    face.trim = trim;
+  }
 }
 
 std::string convert_faces(BrepTable& table, const std::vector<int>& faces) {

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <Geom_BSplineSurface.hxx>
+#include <optional>
 #include <string>
 
 #include "isochor/step/brep_table.h"
@@ -29,5 +30,14 @@ Conversion convert_face(const FaceRecord& face, double diagonal);
 // Turns these faces of the table (0-based) into B-spline faces. Returns why one cannot be, with its
 // handle, or nothing. Throws PreconditionError when a number is out of range.
 [[nodiscard]] std::string convert_faces(BrepTable& table, const std::vector<int>& faces);
+
+// B-spline faces that use a box of their surface's parameters get the surface of that box alone
+// (cut_box.h): their sides are natural then, and join like all others. The edges and parameter
+// curves stay, because the parameters do.
+void cut_iso_boxes(BrepTable& table);
+
+// The same for the surface of a face that comes back from an edit: `whole` cut to the domain of
+// `edited`; nothing when that is its own domain already, or not inside it.
+std::optional<Surface> cut_like(const Surface& whole, const Surface& edited);
 
 }  // namespace isochor::internal

@@ -138,6 +138,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   BrepTable table =
       brep_table(document.shape, document.faces, part_names(document), changed_by_reader(document));
   convert(table, options.convert, document.path);
+  cut_iso_boxes(table);
   tell_progress(0.3, "looking at edges");
   for (const EdgeRecord& edge : table.edges) model.edges.push_back(measure_edge(table, edge));
   model.patches = patch_model(table, model.edges);

@@ -113,6 +113,18 @@ std::string convert_all(const Document& document, const std::vector<int>& conver
   return "";
 }
 
+// The old surfaces of faces that read_solid showed as a box cut out of their surface.
+void add_cut_boxes(const Document& document, const std::vector<EditedFace>& faces,
+                   std::map<int, Surface>& converted) {
+  for (const EditedFace& edited : faces) {
+    if (converted.count(edited.face) > 0) continue;
+    const FaceSurface whole = face_surface(document.face(edited.face));
+    if (!whole.surface) continue;
+    std::optional<Surface> part = cut_like(*whole.surface, edited.surface);
+    if (part) converted.emplace(edited.face, *std::move(part));
+  }
+}
+
 // Labels of sub-shapes carry names and colours: each must point to what its shape became.
 void repoint(const TDF_Label& label, BRepTools_Modifier& modifier,
              const TopTools_IndexedMapOfShape& known) {
@@ -180,6 +192,7 @@ std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
   std::map<int, Surface> converted;
   std::string refusal = convert_all(document, convert, converted);
   if (!refusal.empty()) return refusal;
+  add_cut_boxes(document, faces, converted);
   std::vector<Part> parts = parts_of(document);
   refusal = distribute(document, faces, converted, parts);
   for (const auto& part : parts) {
