@@ -67,7 +67,8 @@ void expect_done_and_valid(const EditRun& r) {
   EXPECT_TRUE(r.report.rebuilt.valid);
   EXPECT_TRUE(r.after.facts.valid && r.after.facts.closed);
   EXPECT_LE(r.after.facts.max_tolerance, r.before.facts.max_tolerance);
-  EXPECT_LE(r.report.rebuilt.max_edge_gap, r.report.before.max_edge_gap);
+  EXPECT_LE(r.report.rebuilt.max_edge_gap,
+            r.report.before.max_edge_gap + 4 * kUnitRoundoff * r.before.facts.diagonal);
   EXPECT_EQ(r.after.facts.names, r.before.facts.names);
   EXPECT_EQ(r.after.facts.coloured, r.before.facts.coloured);
 }
@@ -111,7 +112,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"FuselagePull", "fuselage.step", "fuselage_pull.json", 1},
                       Case{"Fuselage12Pull", "fuselage12.step", "fuselage12_pull.json", 4},
                       Case{"HullPull", "hull.step", "hull_pull.json", 2},
-                      Case{"PatchworkPull", "patchwork.step", "patchwork_pull.json", 6},
+                      Case{"PatchworkPull", "patchwork.step", "patchwork_pull.json", 7},
                       Case{"CubeFigure4", "cube.step", "cube_figure4.json", 3}),
     [](const auto& instance) { return std::string(instance.param.name); });
 

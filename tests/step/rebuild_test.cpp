@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <BRepBuilderAPI_MakeFace.hxx>
 #include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <TopExp.hxx>
@@ -13,6 +14,7 @@
 #include "isochor/base/error.h"
 #include "isochor/bspline/refinement.h"
 #include "isochor/step/checks.h"
+#include "isochor/step/document_model.h"
 #include "isochor/step/shape_facts.h"
 #include "step/pulls.h"
 #include "step/shapes.h"
@@ -197,6 +199,36 @@ TEST(Rebuild, PlanesAreNotBSplines) {
   EXPECT_THAT(rebuild(document, edits), HasSubstr("not a B-spline"));
   edits[0].face = 99;
   EXPECT_THROW(rebuild(document, edits), PreconditionError);
+}
+
+// A face on a box of its surface comes back as the surface of the box; its border moves with it.
+TEST(Rebuild, BoxesOfASurfaceMoveWithTheirBorder) {
+  const auto whole = internal::plain_bspline(cube().face(0));
+  const auto middle = [](double low, double high, double share) {
+    return low + share * (high - low);
+  };
+  double u0 = 0, u1 = 0, v0 = 0, v1 = 0;
+  whole->Bounds(u0, u1, v0, v1);
+  const TopoDS_Face face = BRepBuilderAPI_MakeFace(whole, middle(u0, u1, 0.2), middle(u0, u1, 0.9),
+                                                   v0, middle(v0, v1, 0.6), 1e-9);
+  auto document = shapes::document_of(face);
+  const auto model = internal::document_model(document, {});
+  ASSERT_EQ(model.patches.patches.size(), 1u);
+  EXPECT_EQ(model.faces[0].trim, TrimKind::kNatural);
+  EXPECT_TRUE(model.patches.locks.empty());
+  const Surface part = model.patches.surface(0);
+  std::vector<Vec3> poles = part.poles();
+  poles[part.index(0, 2)] += Vec3(0.02, 0.01, 0.03);
+  poles[part.index(part.u_size() - 1, part.v_size() - 1)] += Vec3(0.0, 0.01, 0.03);
+  const EditedFace edit{0, Surface(part.u_knots(), part.v_knots(), poles)};
+  const auto before = shape_facts(document);
+  const TopoDS_Shape old = document.shape;
+  ASSERT_EQ(rebuild(document, {edit}), "");
+  EXPECT_EQ(internal::objection_to_rebuilt(before, shape_facts(document)), "");
+  EXPECT_EQ(internal::objection_to_gaps(old, document.shape), "");
+  const auto spline = internal::plain_bspline(document.face(0));
+  ASSERT_FALSE(spline.IsNull());
+  EXPECT_EQ(internal::from_occt(*spline).poles(), poles);
 }
 
 // The trap that makes checks before writing necessary: only the surface is replaced.

@@ -55,7 +55,8 @@ Corner corner(const Vec3& p) {
           static_cast<int>(2.0 * p.z())};
 }
 
-// The edges along a side, in the direction of its parameter.
+// The edges along a side, in the direction of its parameter: two where the side runs through the
+// middle of the top, also between the two halves of the top.
 std::vector<Curve> edges_along(const Surface& surface, Side side) {
   const bool along_u = !is_u_side(side);
   const KnotVector& knots = along_u ? surface.u_knots() : surface.v_knots();

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <set>
 #include <sstream>
 #include <utility>
 
@@ -463,15 +462,11 @@ Closure closure(const PatchModel& model) {
   const PointClasses classes = point_classes(model);
   const std::vector<Join> joins = model.joins.empty() ? find_joins(model) : model.joins;
   std::map<std::pair<int, Side>, int> uses;
-  std::set<std::pair<int, Side>> in_parts;
   Closure result;
   for (const Join& join : joins) {
     for (const auto& [ref, part] : {std::pair(join.a, join.part_a), {join.b, join.part_b}}) {
-      if (part.whole()) {
-        ++uses[{ref.patch, ref.side}];
-      } else {
-        in_parts.insert({ref.patch, ref.side});
-      }
+      int& count = uses[{ref.patch, ref.side}];
+      count = part.whole() ? count + 1 : std::max(count, 1);
     }
     const int senses = sense_of(patch_of(model, join.a), join.a.side) *
                        sense_of(patch_of(model, join.b), join.b.side) * (join.opposed ? -1 : 1);
@@ -483,7 +478,7 @@ Closure closure(const PatchModel& model) {
   for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
     const Patch& patch = model.patches[static_cast<size_t>(q)];
     for (Side side : kSides) {
-      const int count = uses[{q, side}] + static_cast<int>(in_parts.count({q, side}));
+      const int count = uses[{q, side}];
       if (count > 1) result.overused_sides.push_back(label_of(model, {q, side}));
       if (count == 0 && !is_collapsed(patch, side, classes) &&
           !folded_onto_itself(patch, side, classes)) {
