@@ -112,15 +112,16 @@ class RelationFinder {
     Join refined;
     refined.a = pair->a;
     refined.b = pair->b;
-    std::vector<Rational> factors = factors_;
+    const size_t known = factors_.size();
     if (!internal::fit_relation(pair->model, internal::join_line(pair->model, refined), &relation,
-                                &factors)) {
+                                &factors_)) {
       return;
     }
     for (const auto& equations : relation.equations) {
-      if (equations.size() != 1) return;
+      if (equations.size() == 1) continue;
+      factors_.shrink_to(known);
+      return;
     }
-    factors_ = std::move(factors);
     relations_.push_back(std::move(relation));
   }
 

@@ -90,7 +90,9 @@ std::string distribute(const Document& document, const std::vector<EditedFace>& 
           part.changes.back().before = local_surface(before->second, face);
         }
         const Surface* file = stated_surface(edited.surface, face, edited.face, stated);
-        if (file != nullptr) part.changes.back().before = *file;
+        if (file != nullptr) {
+          part.changes.back().before = cut_like(*file, edited.surface).value_or(*file);
+        }
       }
     }
     if (!found) return handle_of(edited.face) + ": belongs to no part of the file";
