@@ -195,6 +195,52 @@ TEST(Surgical, GivesUpWithAReason) {
             "f.step: line 29: #61 refers to #99, which is not in the file");
 }
 
+// Stated measures of the part with the faces, and of another part.
+const char* const kMeasures =
+    "#90=SHAPE_DEFINITION_REPRESENTATION(#91,#92);\n#91=PRODUCT_DEFINITION_SHAPE('',$,#93);\n"
+    "#92=SHAPE_REPRESENTATION('',(#94),$);\n#93=PRODUCT_DEFINITION('',$);\n"
+    "#94=OPEN_SHELL('',(#71,#72));\n"
+    "#101=PROPERTY_DEFINITION('geometric validation property','volume',#91);\n"
+    "#102=PROPERTY_DEFINITION_REPRESENTATION(#101,#103);\n#103=REPRESENTATION('volume',(#104),$);\n"
+    "#104=MEASURE_REPRESENTATION_ITEM('volume measure',VOLUME_MEASURE(2.),$);\n"
+    "#105=PROPERTY_DEFINITION('geometric validation property','centroid',#91);\n"
+    "#106=PROPERTY_DEFINITION_REPRESENTATION(#105,#107);\n#107=REPRESENTATION('c',(#108),$);\n"
+    "#108=CARTESIAN_POINT('centre point',(1.,0.5,0.));\n"
+    "#111=PRODUCT_DEFINITION_SHAPE('',$,#112);\n#112=PRODUCT_DEFINITION('',$);\n"
+    "#113=PROPERTY_DEFINITION('geometric validation property','volume',#111);\n"
+    "#114=PROPERTY_DEFINITION_REPRESENTATION(#113,#103);\n";
+
+TEST(Surgical, RecomputesStatedMeasuresOfTheOnlySolid) {
+  const Part21File file("f.step", with_data(std::string(kData) + kMeasures));
+  SurgicalEdit edit = corner_edit();
+  edit.measures = {true, 1.25, 1.0, {0, 0, 0.125}};
+  const SurgicalText result = edit_text(file, edit);
+  EXPECT_THAT(result.text, HasSubstr("VOLUME_MEASURE(2.5)"));
+  EXPECT_THAT(result.text, HasSubstr("'centre point',(1.,0.5,0.125)"));
+  EXPECT_THAT(result.notices, ::testing::ElementsAre(HasSubstr("3 stated volumes")));
+}
+
+TEST(Surgical, DropsStatedMeasuresOfEditedPartsOnly) {
+  const Part21File file("f.step", with_data(std::string(kData) + kMeasures));
+  const SurgicalText result = edit_text(file, corner_edit());
+  const auto has = [&](const std::string& text) {
+    return result.text.find(text) != std::string::npos;
+  };
+  EXPECT_FALSE(has("#102=")) << result.text;
+  EXPECT_FALSE(has("#106="));
+  EXPECT_TRUE(has("\n#114=PROPERTY_DEFINITION_REPRESENTATION(#113,#103);\n"));
+  EXPECT_TRUE(has("VOLUME_MEASURE(2.)"));
+  EXPECT_THAT(result.notices,
+              ::testing::ElementsAre(HasSubstr("2 stated volumes, areas or centroids")));
+}
+
+TEST(Surgical, SaysThatTrianglesStay) {
+  const Part21File file(
+      "f.step", with_data(std::string(kData) + "#99=TESSELLATED_SOLID('',(#98),$);\n#98=X();\n"));
+  EXPECT_THAT(edit_text(file, corner_edit()).notices,
+              ::testing::ElementsAre(HasSubstr("the file also has triangles (1 ")));
+}
+
 TEST(Surgical, NothingMovedIsTheFile) {
   const Part21File file("f.step", with_data(kData));
   EXPECT_EQ(edit_text(file, {}).text, file.text());

@@ -12,6 +12,7 @@
 #include "isochor/step/output_file.h"
 #include "isochor/step/rebuild.h"
 #include "isochor/step/shape_facts.h"
+#include "isochor/step/solid_moments.h"
 #include "isochor/step/surgical.h"
 #include "isochor/step/surgical_plan.h"
 
@@ -82,14 +83,31 @@ std::vector<RebuildPlan> rebuild_and_check(const WriteJob& job, Document& docume
   return plans;
 }
 
-// Returns why not, in words.
-std::string write_lines(const WriteJob& job, const Document& document,
+// For the volumes, areas and centroids that files state.
+MeasureChange measure_change(const TopoDS_Shape& before, const TopoDS_Shape& after,
+                             const WriteReport& report) {
+  MeasureChange change;
+  change.known = report.before.solids == 1 && report.before.closed && report.before.volume != 0.0;
+  if (!change.known) return change;
+  change.volume_factor = report.rebuilt.volume / report.before.volume;
+  change.area_factor = report.rebuilt.area / report.before.area;
+  const Moments a = moments_from(shape_moments(before)), b = moments_from(shape_moments(after));
+  change.centroid_shift = b.centroid - a.centroid;
+  return change;
+}
+
+// Returns why not, in words. `before`: the shape as it was read.
+std::string write_lines(const WriteJob& job, const Document& document, const TopoDS_Shape& before,
                         const std::vector<RebuildPlan>& plans, const std::string& path,
                         WriteReport& report) {
   SurgicalText text;
   try {
     const Part21File file = load_part21(job.step_text);
-    text = edit_text(file, surgical_edit(document, plans));
+    SurgicalEdit edit = surgical_edit(document, plans);
+    if (!plans.empty() && states_measures(file)) {
+      edit.measures = measure_change(before, document.shape, report);
+    }
+    text = edit_text(file, edit);
   } catch (const InputError& e) {
     return (e.entity().empty() ? "" : e.entity() + ": ") + e.reason();
   }
@@ -104,6 +122,15 @@ std::string write_lines(const WriteJob& job, const Document& document,
   report.lines_repointed = text.lines_repointed;
   report.notices.insert(report.notices.end(), text.notices.begin(), text.notices.end());
   return "";
+}
+
+bool states_any(const WriteJob& job) {
+  if (job.step_text.empty()) return false;
+  try {
+    return states_measures(load_part21(job.step_text));
+  } catch (const InputError&) {
+    return false;  // a text that cannot be read line by line
+  }
 }
 
 // Child 1: everything up to the temporary file.
@@ -123,14 +150,19 @@ WriteReport change_and_write(const WriteJob& job, const std::string& path, Way w
                      " cannot be written without rounding; BREP keeps the numbers";
     return report;
   }
+  const TopoDS_Shape before = document.shape;
   const auto plans = rebuild_and_check(job, document, report);
   if (!report.refusal.empty()) return report;
   tell_progress(0.8, "writing");
   if (way.line_by_line) {
-    report.not_line_by_line = write_lines(job, document, plans, path, report);
+    report.not_line_by_line = write_lines(job, document, before, plans, path, report);
     return report;
   }
   note_losses(document, format_of(path), report.notices);
+  settings.stated_measures = job.edits.empty();
+  if (!settings.stated_measures && format_of(path) == FileFormat::kStep && states_any(job)) {
+    report.notices.push_back("stated volumes, areas and centroids were dropped");
+  }
   report.written_by = kOpenCascade;
   write_document(document, path, settings);
   return report;

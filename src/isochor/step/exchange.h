@@ -26,6 +26,8 @@ void require_xde(Document& document);
 struct WriteSettings {
   // Parameter curves of STEP edges. Some solids survive a round trip only without them.
   bool parameter_curves = true;
+  // Volumes, areas and centroids that a STEP file states; they do not outlive an edit.
+  bool stated_measures = true;
   // Faces whose surfaces get the input file's own numbers back (STEP only).
   FileSurfaces surfaces;
 };

@@ -70,6 +70,18 @@ std::uint64_t Part21Edit::append(const Part21Instance& beside, const std::string
   return next_++;
 }
 
+void Part21Edit::remove(const Part21Instance& instance) {
+  const std::string& old = file_.text();
+  size_t begin = instance.span.begin, end = instance.span.end;
+  const auto next = replacements_.lower_bound(begin);
+  ISOCHOR_REQUIRE(next == replacements_.end() || next->first >= end, instance.number);
+  const bool starts_line = begin == 0 || old[begin - 1] == '\n' || old[begin - 1] == '\r';
+  const std::string& ending = file_.line_ending();
+  if (starts_line && old.compare(end, ending.size(), ending) == 0) end += ending.size();
+  replacements_[begin] = {end, ""};
+  changed_.insert(instance.number);
+}
+
 std::string Part21Edit::text() const {
   const std::string& old = file_.text();
   std::string out;

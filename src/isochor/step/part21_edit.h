@@ -3,7 +3,7 @@
 //
 // Laws:
 //  (1) without changes the text is the file's, byte for byte;
-//  (2) outside the replaced spans and the appended lines the text is the file's;
+//  (2) outside the replaced spans, the removed and the appended lines the text is the file's;
 //  (3) numbers are written with the fewest digits that read back as the same double.
 #pragma once
 
@@ -34,6 +34,9 @@ class Part21Edit {
   // ';'; line breaks between its values are left out.
   // Returns its number, one more than the largest so far.
   std::uint64_t append(const Part21Instance& beside, const std::string& body);
+
+  // Takes out an instance that has no other changes, with its line when it stands there alone.
+  void remove(const Part21Instance& instance);
 
   int lines_appended() const { return count_; }
   int lines_changed() const { return static_cast<int>(changed_.size()); }

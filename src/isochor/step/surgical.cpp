@@ -50,6 +50,7 @@ class Surgeon {
       result.refusal = reason.reason;
       return result;
     }
+    update_measures(file_, references_, edited_, edit_.measures, out_, result.notices);
     result.text = out_.text();
     result.lines_appended = out_.lines_appended();
     result.lines_repointed = out_.lines_changed();

@@ -23,6 +23,7 @@
 #include "isochor/bspline/surface.h"
 #include "isochor/step/part21.h"
 #include "isochor/step/part21_splines.h"
+#include "isochor/step/surgical_properties.h"
 
 namespace isochor::internal {
 
@@ -50,6 +51,7 @@ struct SurgicalEdit {
   std::vector<MovedSurface> surfaces;
   std::vector<MovedCurve> curves;
   std::vector<MovedPoint> points;
+  MeasureChange measures;  // of the whole file
   // Edges and vertices of the edited faces that are known to be what they are in the file; the
   // others are matched by place.
   std::set<std::uint64_t> known_edges, known_vertices;

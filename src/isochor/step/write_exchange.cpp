@@ -50,6 +50,7 @@ void write_step(Document& document, const std::string& path, const WriteSettings
   writer.SetLayerMode(true);
   writer.SetDimTolMode(true);
   writer.SetMaterialMode(true);
+  writer.SetPropsMode(settings.stated_measures);
   if (!writer.Transfer(document.xde, STEPControl_AsIs)) {
     throw InputError(path, "", "the shape cannot be written as STEP");
   }
