@@ -16,6 +16,7 @@ import unittest
 ISOCHOR, SOURCE, WORK = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 CUBE = SOURCE / "data/step/cube.isochor.json"
 HULL = SOURCE / "data/step/hull.step"
+PATCHWORK = SOURCE / "data/step/patchwork.step"
 PULL = SOURCE / "data/edits/cube_figure4.json"
 HULL_PULL = SOURCE / "data/edits/hull_pull.json"
 
@@ -67,6 +68,18 @@ class Scenario(unittest.TestCase):
 
 
 class Info(Scenario):
+    def test_joins_in_different_bases_are_tied_in_a_common_one(self):
+        done = isochor("info", PATCHWORK)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("tied in a common basis (7 poles against 9)", done.stdout)
+        self.assertIn("tied in a common basis (a part of a side)", done.stdout)
+        self.assertNotIn("locked", done.stdout)
+        joins = self.run_json("info", PATCHWORK)["joins"]
+        self.assertEqual(sum(join["common_basis"] for join in joins), 7)
+        self.assertTrue(all(join["tied"] for join in joins))
+        self.assertEqual({join["bases"] for join in joins if join["common_basis"]},
+                         {"7 poles against 9", "a part of a side"})
+
     def test_patches_and_joins_of_a_patch_model(self):
         info = self.run_json("info", CUBE)
         self.assertEqual([p["name"] for p in info["patches"]],
