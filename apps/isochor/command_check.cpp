@@ -25,6 +25,10 @@ std::vector<std::string> findings_of(const LoadedModel& loaded) {
     if (!facts.valid && facts.defects.empty()) findings.emplace_back("the shape is not valid");
     if (!facts.closed) findings.push_back("open: " + loaded.surroundings.why_open);
     if (facts.closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
+    if (facts.closed && loaded.volume_bound >= std::abs(loaded.volume)) {
+      findings.push_back(format("the volume is not determined: %.3g, error at most %.2g",
+                                loaded.volume, loaded.volume_bound));
+    }
     return findings;
   }
 #endif

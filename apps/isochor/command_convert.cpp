@@ -71,7 +71,7 @@ int run_convert(const ConvertOptions& options, const Common& common) {
 #ifdef ISOCHOR_WITH_OCCT
   if (is_cad_file(options.input) && is_cad_file(options.output)) {
     return finish_checked(options, common, [&](const ReadOptions& read) {
-      return convert_file(options.input, options.output, read.limits, read.watch);
+      return convert_file(options.input, options.output, read.limits, read.watch, options.rewrite);
     });
   }
   if (from_json && is_cad_file(options.output)) {

@@ -2,7 +2,9 @@
 
 #include "commands.h"
 #include "isochor/base/error.h"
+#include "isochor/io/file.h"
 #include "isochor/io/image.h"
+#include "isochor/io/mesh_obj.h"
 #include "isochor/picture/deviation.h"
 #include "isochor/picture/edit_picture.h"
 #include "isochor/picture/tessellate.h"
@@ -54,10 +56,28 @@ Image compare(const LoadedModel& model, const LoadedModel& other, const Common& 
   return deviation_picture(input);
 }
 
+int finish(const Image& image, const RenderOptions& options, const Common& common) {
+  write_png(options.output, image);
+  print(common, "picture: " + options.output);
+  print_json(common, Value::object().set("outcome", "done").set("picture", options.output));
+  return kExitDone;
+}
+
 }  // namespace
 
 int run_render(const RenderOptions& options, const Common& common) {
   require_picture(options.output);
+  const bool mesh_only = extension_of(options.model) == "obj";
+  if (mesh_only && !options.compare.empty()) {
+    throw InputError(options.model, "", "a mesh cannot be compared; give two models");
+  }
+  if (mesh_only) {
+    ModelPictureInput input;
+    input.mesh = parse_obj(read_file(options.model), options.model);
+    complete_normals(input.mesh);
+    input.title = options.model;
+    return finish(model_picture(input), options, common);
+  }
   const LoadedModel model = load_model(options.model, common);
   Image image;
   if (options.compare.empty()) {
@@ -70,10 +90,7 @@ int run_render(const RenderOptions& options, const Common& common) {
   } else {
     image = compare(model, load_model(options.compare, common), common);
   }
-  write_png(options.output, image);
-  print(common, "picture: " + options.output);
-  print_json(common, Value::object().set("outcome", "done").set("picture", options.output));
-  return kExitDone;
+  return finish(image, options, common);
 }
 
 }  // namespace isochor::app

@@ -64,6 +64,7 @@ int run_check(const CheckOptions& options, const Common& common);
 
 struct ConvertOptions {
   std::string input, output;
+  bool rewrite = false;  // STEP to STEP: written anew by OpenCASCADE instead of copied
 };
 int run_convert(const ConvertOptions& options, const Common& common);
 

@@ -101,12 +101,14 @@ int run(int argc, char** argv) {
   sub = app.add_subcommand("convert", "between STEP, IGES, BREP, .isochor.json; to OBJ, STL, GLB");
   sub->add_option("IN", convert.input)->required();
   sub->add_option("OUT", convert.output)->required();
+  sub->add_flag("--rewrite", convert.rewrite,
+                "from STEP to STEP: let OpenCASCADE write the file anew instead of copying it");
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_convert(convert, common); }; });
 
   RenderOptions render;
   sub = app.add_subcommand("render", "a picture without a display");
-  sub->add_option("MODEL", render.model)->required();
+  sub->add_option("MODEL", render.model, "a model, or a mesh (OBJ)")->required();
   sub->add_option("-o,--output", render.output, "picture to write (PNG)")->required();
   sub->add_option("--compare", render.compare, "colour by the deviation from OTHER");
   add_common(*sub, common);

@@ -463,6 +463,14 @@ class Render(Scenario):
                         leaves={name})
         self.assertEqual((WORK / "a.png").read_bytes(), (WORK / "b.png").read_bytes())
 
+    def test_a_mesh_is_drawn(self):
+        self.assertEqual(isochor("convert", CUBE, "cube.obj").returncode, 0)
+        self.expect(0, "render", "cube.obj", "-o", "mesh.png", leaves={"mesh.png"})
+        self.assertGreaterEqual(min(self.png_size("mesh.png")), 400)
+        (WORK / "bad.obj").write_text("v 0 0 0\nf 1 2 3\n")
+        self.expect(3, "render", "bad.obj", "-o", "bad.png", says="bad.obj: line 2: '2'")
+        self.expect(3, "render", "cube.obj", "-o", "a.png", "--compare", CUBE, says="cannot be compared")
+
     def test_nowhere_to_write(self):
         self.expect(3, "render", CUBE, "-o", "nowhere/a.png", says="nowhere")
         self.expect(3, "render", CUBE, "-o", "a.jpg", says=".png")

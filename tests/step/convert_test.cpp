@@ -40,6 +40,19 @@ TEST(Convert, EveryPairOfFormatsKeepsTheShape) {
   EXPECT_EQ(load_document(folder.file("b.igs")).unit.name, "inch");
 }
 
+TEST(Convert, LinesAreCopiedUnlessTheFileIsToBeWrittenAnew) {
+  const TempFolder folder;
+  const std::string file = write(shapes::assembly("foot"), folder, "pair.step");
+  const auto copied = convert_file(file, folder.file("copy.step"));
+  ASSERT_TRUE(copied.written) << copied.refusal;
+  EXPECT_EQ(copied.written_by, "line by line");
+  const auto anew = convert_file(file, folder.file("anew.step"), {}, {}, true);
+  ASSERT_TRUE(anew.written) << anew.refusal;
+  EXPECT_EQ(anew.written_by, "OpenCASCADE");
+  EXPECT_EQ(anew.reread.names, anew.before.names);
+  EXPECT_EQ(anew.faces_identical, anew.faces_bspline_untouched);
+}
+
 TEST(Convert, CylindersAndAssembliesStayWhereTheyWere) {
   const TempFolder folder;
   write(shapes::assembly("foot"), folder, "pair.step");

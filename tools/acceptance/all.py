@@ -4,7 +4,7 @@
 usage: all.py BUILD_FOLDER [REAL_FILES]
 
 BUILD_FOLDER is a CMake build tree such as build/release. REAL_FILES, a folder of CAD files, defaults to
-ISOCHOR_EXTRA_DATA; without either, real_files.py and whole_solids.py are skipped. Exit status 1 when a
+ISOCHOR_EXTRA_DATA; without either, real_files.py, round_trip.py and whole_solids.py are skipped. Exit status 1 when a
 command fails.
 """
 import argparse
@@ -25,11 +25,14 @@ def main():
     program = options.build_folder / "bin" / "isochor"
     real_files = [program] + ([options.real_files] if options.real_files else [])
     real_files += ["--out", options.build_folder / "acceptance" / "real_files"]
+    round_trip = [*real_files[:-1], options.build_folder / "acceptance" / "round_trip"]
     commands = [("laws.py", [options.build_folder]), ("figure_four.py", [program]),
                 ("solids.py", [program]),
                 ("continuity.py", [program, "--out", options.build_folder / "acceptance" / "continuity"]),
                 ("line_by_line.py", [program, *([options.real_files] if options.real_files else []),
                                      "--out", options.build_folder / "acceptance" / "line_by_line"]),
+                ("unit_twins.py", [program, "--out", options.build_folder / "acceptance" / "unit_twins"]),
+                ("round_trip.py", round_trip),
                 ("real_files.py", real_files),
                 ("whole_solids.py", [options.build_folder / "bin" / "isochor_solid_probe",
                                      *([options.real_files] if options.real_files else [])])]

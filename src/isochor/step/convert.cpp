@@ -7,12 +7,13 @@
 namespace isochor {
 
 WriteReport convert_file(const std::string& input, const std::string& output,
-                         const BridgeLimits& limits, const Watch& watch) {
+                         const BridgeLimits& limits, const Watch& watch, bool rewrite) {
   internal::WriteJob job;
   job.input = input;
   job.source = [input] { return internal::load_document(input); };
   job.output = output;
-  if (internal::format_of(input) == internal::FileFormat::kStep) job.step_text = input;
+  const bool lines = internal::format_of(input) == internal::FileFormat::kStep && !rewrite;
+  if (lines) job.step_text = input;
   job.limits = limits;
   job.watch = watch;
   job.must_be_valid = false;

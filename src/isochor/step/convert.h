@@ -15,9 +15,10 @@ namespace isochor {
 // Formats go by the extensions. `rebuilt` of the report equals `before`; `written` is false, with
 // the reason in `refusal`, when the output would not be the same shape. An input that is not valid
 // is converted as it is. Throws InputError when the input cannot be read or the output cannot be
-// created.
+// created. STEP to STEP copies the lines unless `rewrite`: then OpenCASCADE writes the file anew.
 WriteReport convert_file(const std::string& input, const std::string& output,
-                         const BridgeLimits& limits = {}, const Watch& watch = {});
+                         const BridgeLimits& limits = {}, const Watch& watch = {},
+                         bool rewrite = false);
 
 // Writes patches as faces, sewn where their sides coincide; a closed result is a solid. Names of
 // patches become names of faces. `name` stands for the model in errors. Throws InputError naming
