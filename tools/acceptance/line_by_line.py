@@ -27,6 +27,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 from ledger import Ledger
 
@@ -37,10 +38,10 @@ INSTANCE = re.compile(rb"#(\d+)\s*=\s*\(?\s*(\w+)")
 BY_LINES = "line by line"
 
 FREECAD = """
-import json, sys
+import json, os
 import FreeCAD, Import, Part
 document = FreeCAD.newDocument()
-Import.insert(sys.argv[-2], document.Name)
+Import.insert(os.environ["ISOCHOR_STEP"], document.Name)
 shapes = [o for o in document.Objects if getattr(o, "Shape", None) is not None and not o.Shape.isNull()
           and not o.InList]
 print("\\n@" + json.dumps({
@@ -123,11 +124,15 @@ class Comparison:
 
 def freecad(program, path, seconds):
     """What FreeCAD finds in a file; None when it fails."""
-    try:
-        done = subprocess.run([program, "-c", FREECAD, str(path), "-"], capture_output=True, text=True,
-                              timeout=seconds)
-    except subprocess.TimeoutExpired:
-        return None
+    with tempfile.TemporaryDirectory() as folder:
+        script = pathlib.Path(folder) / "look.py"
+        script.write_text(FREECAD)
+        try:
+            done = subprocess.run([program, str(script)], capture_output=True, text=True, timeout=seconds,
+                                  stdin=subprocess.DEVNULL,
+                                  env={**os.environ, "ISOCHOR_STEP": str(path), "HOME": folder})
+        except subprocess.TimeoutExpired:
+            return None
     found = [line for line in done.stdout.splitlines() if line.startswith("@{")]
     return json.loads(found[-1][1:]) if found else None
 
