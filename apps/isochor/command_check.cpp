@@ -23,9 +23,10 @@ std::vector<std::string> findings_of(const LoadedModel& loaded) {
     findings = import_findings(loaded.solid->import);
     findings.insert(findings.end(), facts.defects.begin(), facts.defects.end());
     if (!facts.valid && facts.defects.empty()) findings.emplace_back("the shape is not valid");
-    if (!facts.closed) findings.push_back("open: " + loaded.surroundings.why_open);
-    if (facts.closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
-    if (facts.closed && loaded.volume_bound >= std::abs(loaded.volume)) {
+    const bool closed = loaded.surroundings.closed;  // by itself or by planes
+    if (!closed) findings.push_back("open: " + loaded.surroundings.why_open);
+    if (closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
+    if (closed && loaded.volume_bound >= std::abs(loaded.volume)) {
       findings.push_back(format("the volume is not determined: %.3g, error at most %.2g",
                                 loaded.volume, loaded.volume_bound));
     }
@@ -33,12 +34,14 @@ std::vector<std::string> findings_of(const LoadedModel& loaded) {
   }
 #endif
   const Closure closed = closure(loaded.patches);
-  for (const std::string& side : closed.open_sides) findings.push_back("open: " + side);
+  if (!loaded.surroundings.closed) {
+    for (const std::string& side : closed.open_sides) findings.push_back("open: " + side);
+  }
   for (const std::string& side : closed.overused_sides) {
     findings.push_back("joined more than once: " + side);
   }
   for (const std::string& side : closed.misoriented_sides) findings.push_back(side);
-  if (closed.closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
+  if (loaded.surroundings.closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
   return findings;
 }
 
@@ -108,9 +111,11 @@ Value compare(const LoadedModel& now, const LoadedModel& then, const Common& com
 }  // namespace
 
 int run_check(const CheckOptions& options, const Common& common) {
-  const LoadedModel loaded = load_model(options.model, common);
+  ShapeMeasures measures;
+  measures.close = parse_close(options.close);
+  const LoadedModel loaded = load_model(options.model, common, {}, measures);
   std::optional<LoadedModel> original;
-  if (!options.against.empty()) original = load_model(options.against, common);
+  if (!options.against.empty()) original = load_model(options.against, common, {}, measures);
   const std::vector<std::string> findings = findings_of(loaded);
   const Measures m = measures_of(loaded);
   const std::string unit = loaded.patches.unit;

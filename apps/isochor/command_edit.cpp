@@ -119,6 +119,21 @@ void require_outputs(const EditOptions& options) {
   if (!options.html.empty()) require_writable(options.html);
 }
 
+// The closing planes of the command line, or else of the edits file.
+std::vector<ClosingPlane> planes_for(const EditOptions& options, const EditScript& script) {
+  std::vector<ClosingPlane> planes;
+  try {
+    planes = closing_planes(script);
+  } catch (const InputError& error) {
+    throw error.in_file(options.edits);
+  }
+  if (options.close.empty()) return planes;
+  if (!planes.empty()) {
+    throw InputError(options.edits, "close", "the command line names closing planes too: give one");
+  }
+  return parse_close(options.close);
+}
+
 // What the command leaves besides the model.
 struct Account {
   Outcome outcome = Outcome::kDone;
@@ -148,8 +163,11 @@ int run_edit(const EditOptions& options, const Common& common) {
   require_outputs(options);
   const EditScript script = read_script(options.edits);
   const std::vector<std::string> named = named_patches(script);
-  const LoadedModel loaded = load_model(
-      options.model, common, is_cad_file(options.model) ? named : std::vector<std::string>());
+  ShapeMeasures measures;
+  measures.close = planes_for(options, script);
+  const LoadedModel loaded =
+      load_model(options.model, common,
+                 is_cad_file(options.model) ? named : std::vector<std::string>(), measures);
   if (loaded.patches.patches.empty()) {
     throw InputError(options.model, "",
                      "no face can be edited as it is; name a face that can be converted "
@@ -162,7 +180,8 @@ int run_edit(const EditOptions& options, const Common& common) {
   account.outcome = overall_outcome(certificates);
   account.extra = {{"model", Value(options.model)},
                    {"edits_file", Value(options.edits)},
-                   {"undefined_by_gaps", Value(loaded.undefined_by_gaps)}};
+                   {"undefined_by_gaps", Value(loaded.undefined_by_gaps)},
+                   {"closed_by", Value(closing_names(loaded))}};
   if (account.outcome == Outcome::kDone) {
     if (!options.picture.empty() || !options.html.empty()) {
       account.png = encode_png(draw_edit(loaded, session, certificates, common));
@@ -170,6 +189,7 @@ int run_edit(const EditOptions& options, const Common& common) {
     WrittenModel written = write_edited_model(loaded, session, options.output, common);
     account.extra.insert(account.extra.end(), written.report.begin(), written.report.end());
     account.lines = std::move(written.lines);
+    if (!closing_text(loaded).empty()) account.lines.push_back("volumes: " + closing_text(loaded));
     if (!gaps_text(loaded).empty())
       account.lines.push_back(gaps_text(loaded) + ", not of its change");
     if (written.written) {

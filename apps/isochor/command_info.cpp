@@ -214,7 +214,9 @@ Value faces_value(const SolidModel& solid) {
 }  // namespace
 
 int run_info(const InfoOptions& options, const Common& common) {
-  const LoadedModel loaded = load_model(options.model, common);
+  ShapeMeasures measures;
+  measures.close = parse_close(options.close);
+  const LoadedModel loaded = load_model(options.model, common, {}, measures);
   const PatchModel& model = loaded.patches;
   Value result = Value::object().set("model", options.model);
   std::string unit = model.unit;
@@ -240,6 +242,8 @@ int run_info(const InfoOptions& options, const Common& common) {
                              unit.c_str(), loaded.volume_bound,
                              loaded.volume >= 0 ? "oriented outwards" : "oriented inwards")
                     : "open: " + loaded.surroundings.why_open);
+  if (!loaded.opening.empty()) print(common, loaded.opening);
+  if (!closing_text(loaded).empty()) print(common, closing_text(loaded));
   if (loaded.surroundings.closed && !gaps_text(loaded).empty()) {
     print(common, gaps_text(loaded));
   }
@@ -250,7 +254,9 @@ int run_info(const InfoOptions& options, const Common& common) {
       .set("joins", joins)
       .set("relations", relations_value(model))
       .set("closed", loaded.surroundings.closed)
-      .set("why_open", loaded.surroundings.why_open)
+      .set("why_open", loaded.surroundings.closed ? "" : loaded.surroundings.why_open)
+      .set("opening", loaded.opening)
+      .set("closed_by", closing_names(loaded))
       .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())
       .set("bound", loaded.volume_bound)
       .set("undefined_by_gaps", loaded.undefined_by_gaps);

@@ -64,13 +64,15 @@ std::optional<Edit> suggested(const LoadedModel& loaded, const std::string& path
 }  // namespace
 
 int run_suggest(const SuggestOptions& options, const Common& common) {
-  LoadedModel loaded = load_model(options.model, common);
+  ShapeMeasures measures;
+  measures.close = parse_close(options.close);
+  LoadedModel loaded = load_model(options.model, common, {}, measures);
   std::optional<Edit> edit;
   if (!loaded.patches.patches.empty()) edit = suggested(loaded, options.model);
   constexpr size_t kMostConversions = 4;
   const std::vector<std::string> candidates = convertible_faces(loaded);
   for (size_t k = 0; !edit && k < candidates.size() && k < kMostConversions; ++k) {
-    const LoadedModel converted = load_model(options.model, common, {candidates[k]});
+    const LoadedModel converted = load_model(options.model, common, {candidates[k]}, measures);
     if (!converted.patches.patches.empty()) {
       edit = suggested(converted, options.model);
     }
@@ -81,7 +83,7 @@ int run_suggest(const SuggestOptions& options, const Common& common) {
     print_json(common, Value::object().set("outcome", "refused").set("reason", why));
     return kExitNo;
   }
-  const std::string text = format_edits({{*edit}});
+  const std::string text = format_edits({{*edit}, measures.close});
   if (options.output.empty()) {
     std::fputs(text.c_str(), stdout);
     return kExitDone;

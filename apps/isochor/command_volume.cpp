@@ -13,6 +13,12 @@ namespace {
 // The rational volume when every face is a whole polynomial patch; else an InputError that says
 // which face is in the way.
 std::string exact_text(const LoadedModel& loaded) {
+  const FluxFrame frame(require_field(loaded.surroundings.closing));
+  if (!frame.exact()) {
+    throw InputError(loaded.path, closing_text(loaded),
+                     "the exact volume needs closing planes of which one passes through the origin "
+                     "and all are coordinate planes; omit --exact");
+  }
 #ifdef ISOCHOR_WITH_OCCT
   if (loaded.solid) {
     for (const FaceFacts& face : loaded.solid->faces) {
@@ -23,28 +29,36 @@ std::string exact_text(const LoadedModel& loaded) {
     }
   }
 #endif
-  return ExactVolume(loaded.patches).value(loaded.patches.points).to_string();
+  return ExactVolume(loaded.patches).value(frame.points(loaded.patches.points)).to_string();
 }
 
 }  // namespace
 
 int run_volume(const VolumeOptions& options, const Common& common) {
   if (!options.section.empty()) require_plane(options.section);
-  const LoadedModel loaded =
-      load_model(options.model, common, {}, {options.moments, options.section});
+  const LoadedModel loaded = load_model(
+      options.model, common, {}, {options.moments, options.section, parse_close(options.close)});
   const bool measured = options.moments || !options.section.empty();
+  if (!loaded.surroundings.closing.empty() && !options.section.empty()) {
+    throw InputError(options.model, "--section",
+                     "cuts an open curve out of a model that planes close: sections of those are "
+                     "not available in this version");
+  }
   if (!loaded.surroundings.closed && (measured || !options.open)) {
     refuse(
         options.model + ": the model is open (" + loaded.surroundings.why_open +
         ") and encloses no volume; " +
         (measured ? "it has no moments and no sections" : "--open prints the integral of z dx dy"));
+    if (!loaded.opening.empty()) refuse(options.model + ": " + loaded.opening);
     print_json(common, Value::object()
                            .set("outcome", "refused")
-                           .set("reason", "open: " + loaded.surroundings.why_open));
+                           .set("reason", "open: " + loaded.surroundings.why_open)
+                           .set("opening", loaded.opening));
     return kExitNo;
   }
   Value result = Value::object().set("volume", loaded.volume).set("bound", loaded.volume_bound);
   result.set("undefined_by_gaps", loaded.undefined_by_gaps);
+  if (!loaded.surroundings.closing.empty()) result.set("closed_by", closing_names(loaded));
   std::string exact;
   try {
     if (options.exact) exact = exact_text(loaded);
@@ -65,12 +79,14 @@ int run_volume(const VolumeOptions& options, const Common& common) {
   if (!options.gradient.empty()) {
     Value rows = Value::list();
     for (const Vec3& row :
-         VolumeForm(loaded.patches, common.threads).gradient(loaded.patches.points)) {
+         VolumeForm(loaded.patches, common.threads, require_field(loaded.surroundings.closing))
+             .gradient(loaded.patches.points)) {
       rows.push(row);
     }
     write_file(options.gradient, to_json(rows, -1));
   }
   print(common, format("%.17g (error at most %.2g)", loaded.volume, loaded.volume_bound));
+  if (!closing_text(loaded).empty()) print(common, closing_text(loaded));
   if (!gaps_text(loaded).empty()) print(common, gaps_text(loaded));
   if (options.exact) print(common, "exact: " + exact);
   if (moments) print_moments(common, *moments, loaded.patches.unit);

@@ -33,6 +33,7 @@ struct Common {
 
 struct InfoOptions {
   std::string model;
+  std::vector<std::string> close;  // planes that close the model, as written
 };
 int run_info(const InfoOptions& options, const Common& common);
 
@@ -43,22 +44,26 @@ struct VolumeOptions {
   bool moments = false;
   std::vector<double> section;  // NX,NY,NZ,H, or empty
   std::string gradient;         // file to write
+  std::vector<std::string> close;
 };
 int run_volume(const VolumeOptions& options, const Common& common);
 
 struct SuggestOptions {
   std::string model;
   std::string output;
+  std::vector<std::string> close;
 };
 int run_suggest(const SuggestOptions& options, const Common& common);
 
 struct EditOptions {
   std::string model, edits, output, report, picture, html;
+  std::vector<std::string> close;
 };
 int run_edit(const EditOptions& options, const Common& common);
 
 struct CheckOptions {
   std::string model, against;
+  std::vector<std::string> close;
 };
 int run_check(const CheckOptions& options, const Common& common);
 

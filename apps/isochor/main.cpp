@@ -28,6 +28,14 @@ void add_common(CLI::App& app, Common& common) {
       ->check(CLI::PositiveNumber);
 }
 
+void add_close(CLI::App& app, std::vector<std::string>& close) {
+  app.add_option("--close", close,
+                 "a plane that closes an open model: y=0, z=12.5 or NX,NY,NZ,H; may be repeated")
+      ->option_text("PLANE")
+      ->expected(1)
+      ->take_all();
+}
+
 // Commands of CONTRACT that this version does not have: refused by name, not as a typo.
 void add_missing(CLI::App& app, std::function<int()>& action) {
   for (const char* name : {"deform", "sculpt", "studio"}) {
@@ -53,6 +61,7 @@ int run(int argc, char** argv) {
   InfoOptions info;
   CLI::App* sub = app.add_subcommand("info", "faces, joins, continuity, locks, unit, volume");
   sub->add_option("MODEL", info.model)->required();
+  add_close(*sub, info.close);
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_info(info, common); }; });
 
@@ -69,6 +78,7 @@ int run(int argc, char** argv) {
       ->expected(4)
       ->option_text("NX,NY,NZ,H");
   sub->add_option("--gradient", volume.gradient, "write dV/dx, dV/dy, dV/dz of every point");
+  add_close(*sub, volume.close);
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_volume(volume, common); }; });
 
@@ -76,6 +86,7 @@ int run(int argc, char** argv) {
   sub = app.add_subcommand("suggest", "a ready-to-run edit at the freest place of the model");
   sub->add_option("MODEL", suggest.model)->required();
   sub->add_option("-o,--output", suggest.output, "edits file to write (default: stdout)");
+  add_close(*sub, suggest.close);
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_suggest(suggest, common); }; });
 
@@ -87,6 +98,7 @@ int run(int argc, char** argv) {
   sub->add_option("--report", edit.report, "report to write (JSON)");
   sub->add_option("--picture", edit.picture, "picture to write (PNG): before, after, difference");
   sub->add_option("--html", edit.html, "page to write (HTML): numbers, checks and the picture");
+  add_close(*sub, edit.close);
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_edit(edit, common); }; });
 
@@ -94,6 +106,7 @@ int run(int argc, char** argv) {
   sub = app.add_subcommand("check", "validity, gaps, continuity, orientation, volume");
   sub->add_option("MODEL", check.model)->required();
   sub->add_option("--against", check.against, "what changed since ORIGINAL, face by face");
+  add_close(*sub, check.close);
   add_common(*sub, common);
   sub->callback([&] { action = [&] { return run_check(check, common); }; });
 

@@ -4,31 +4,56 @@
 
 #include "busy_line.h"
 #include "isochor/base/error.h"
+#include "isochor/base/tolerance.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/io/file.h"
 #include "isochor/io/model_json.h"
+#include "isochor/volume/closing.h"
 #include "isochor/volume/volume_form.h"
 #include "terminal.h"
 
 namespace isochor::app {
 namespace {
 
-LoadedModel load_json(const std::string& path, int threads) {
+// Applies closing planes to a model with these open edges: closed, or why not.
+void close_by_planes(const std::vector<OpenEdge>& edges, const std::vector<ClosingPlane>& planes,
+                     double tolerance, LoadedModel& loaded) {
+  Surroundings& around = loaded.surroundings;
+  loaded.opening = opening_text(edges, tolerance);
+  if (planes.empty()) return;
+  if (around.closed) {
+    throw InputError(loaded.path, "close", "the model is closed: it needs no closing planes");
+  }
+  const ClosingCheck check = check_closing(edges, planes, tolerance);
+  if (edges.empty()) return;  // open for another reason
+  if (!check.closed) {
+    throw InputError(loaded.path, "close",
+                     "the model is not closed by " + text_of(planes) + ": " + check.why_open);
+  }
+  around.closed = true;
+  around.closing = planes;
+  loaded.opening.clear();
+}
+
+LoadedModel load_json(const std::string& path, int threads, const ShapeMeasures& measures) {
   LoadedModel loaded;
   loaded.path = path;
   loaded.patches = parse_model(read_file(path), path);
   const Closure closed = closure(loaded.patches);
   loaded.surroundings.closed = closed.closed;
   if (!closed.closed) {
-    const auto& sides = !closed.open_sides.empty()       ? closed.open_sides
-                        : !closed.overused_sides.empty() ? closed.overused_sides
-                                                         : closed.misoriented_sides;
+    const auto& sides = !closed.overused_sides.empty()      ? closed.overused_sides
+                        : !closed.misoriented_sides.empty() ? closed.misoriented_sides
+                                                            : closed.open_sides;
     loaded.surroundings.why_open = sides.empty() ? "its sides do not close up" : sides.front();
     if (sides.size() > 1) {
       loaded.surroundings.why_open += " and " + std::to_string(sides.size() - 1) + " more";
     }
   }
-  const VolumeForm form(loaded.patches, threads);
+  const bool only_open = closed.overused_sides.empty() && closed.misoriented_sides.empty();
+  close_by_planes(only_open ? open_edges(loaded.patches, closed) : std::vector<OpenEdge>(),
+                  measures.close, kCoincident * diagonal(loaded.patches), loaded);
+  const VolumeForm form(loaded.patches, threads, require_field(measures.close));
   const Bounded volume = form.bounded_value(loaded.patches.points);
   loaded.volume = volume.value;
   loaded.volume_bound = volume.bound;
@@ -36,7 +61,8 @@ LoadedModel load_json(const std::string& path, int threads) {
 }
 
 #ifdef ISOCHOR_WITH_OCCT
-LoadedModel from_solid(SolidModel solid, std::vector<int> converted) {
+LoadedModel from_solid(SolidModel solid, std::vector<int> converted,
+                       const std::vector<ClosingPlane>& planes) {
   LoadedModel loaded;
   loaded.converted = std::move(converted);
   loaded.path = solid.path;
@@ -51,9 +77,13 @@ LoadedModel from_solid(SolidModel solid, std::vector<int> converted) {
                                    std::to_string(solid.facts.multiple_edges) +
                                    " edges of more than two faces";
   }
+  const bool only_open = solid.facts.multiple_edges == 0;
+  close_by_planes(only_open ? solid.open_edges : std::vector<OpenEdge>(), planes,
+                  std::max(kCoincident * solid.facts.diagonal, solid.facts.max_tolerance), loaded);
   // As the session measures them, so that what it starts from is the volume of the file.
-  const double whole_patches =
-      VolumeForm(loaded.patches).bounded_value(loaded.patches.points).value;
+  const double whole_patches = VolumeForm(loaded.patches, 1, require_field(planes))
+                                   .bounded_value(loaded.patches.points)
+                                   .value;
   loaded.surroundings.outside_volume = loaded.volume - whole_patches;
   loaded.surroundings.outside_bound = solid.facts.volume_bound;
   loaded.solid = std::move(solid);
@@ -69,6 +99,30 @@ std::string gaps_text(const LoadedModel& loaded) {
   return format(
       "gaps of up to %.2g %s leave %.2g %s^3 of the volume undefined (tolerance times area)",
       loaded.gap_tolerance, unit, loaded.undefined_by_gaps, unit);
+}
+
+std::vector<ClosingPlane> parse_close(const std::vector<std::string>& options) {
+  std::vector<ClosingPlane> planes;
+  for (const std::string& text : options) {
+    try {
+      planes.push_back(parse_closing_plane(text));
+    } catch (const InputError& error) {
+      throw InputError("--close", error.entity(), error.reason());
+    }
+  }
+  require_field(planes);
+  return planes;
+}
+
+std::vector<std::string> closing_names(const LoadedModel& loaded) {
+  std::vector<std::string> names;
+  for (const ClosingPlane& plane : loaded.surroundings.closing) names.push_back(text_of(plane));
+  return names;
+}
+
+std::string closing_text(const LoadedModel& loaded) {
+  const auto& planes = loaded.surroundings.closing;
+  return planes.empty() ? "" : "closed by " + text_of(planes);
 }
 
 bool is_cad_file(const std::string& path) {
@@ -129,6 +183,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
   ReadOptions options = read_options(common, busy);
   options.moments = measures.moments;
   options.section = measures.section;
+  options.close = measures.close;
   SolidModel solid = read_solid(path, options);
   for (const std::string& name : convert) {
     const int face = find_face(solid, name);
@@ -153,7 +208,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
 
 LoadedModel load_model(const std::string& path, const Common& common,
                        const std::vector<std::string>& convert, const ShapeMeasures& measures) {
-  if (extension_of(path) == "isochor.json") return load_json(path, common.threads);
+  if (extension_of(path) == "isochor.json") return load_json(path, common.threads, measures);
   if (!is_cad_file(path)) {
     read_file(path);  // a missing file is the better message
     throw InputError(path, "",
@@ -163,7 +218,7 @@ LoadedModel load_model(const std::string& path, const Common& common,
   std::vector<int> converted;
   SolidModel solid = read_converted(path, common, convert, measures, converted);
   for (const std::string& notice : solid.notices) detail(common, path + ": " + notice);
-  return from_solid(std::move(solid), std::move(converted));
+  return from_solid(std::move(solid), std::move(converted), measures.close);
 #else
   (void)common;
   (void)convert;

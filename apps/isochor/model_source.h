@@ -20,6 +20,7 @@ struct LoadedModel {
   std::string path;
   PatchModel patches;
   Surroundings surroundings;
+  std::string opening;  // where it is open and what closes it, in words; empty when it is closed
   double volume = 0.0;  // total, signed
   double volume_bound = 0.0;
   // What gaps between faces leave open in the volume: their tolerance times the area. Patches that
@@ -42,8 +43,16 @@ bool is_cad_file(const std::string& path);
 // What is measured on the shape of a CAD file, beside its volume.
 struct ShapeMeasures {
   bool moments = false;
-  std::vector<double> section;  // NX, NY, NZ, H, or empty
+  std::vector<double> section;      // NX, NY, NZ, H, or empty
+  std::vector<ClosingPlane> close;  // planes that close the model
 };
+
+// The planes that --close names. InputError for what is no plane.
+std::vector<ClosingPlane> parse_close(const std::vector<std::string>& options);
+// "closed by the plane y = 0"; empty when no planes close it.
+std::string closing_text(const LoadedModel& loaded);
+// ["y = 0"], for the key "closed_by".
+std::vector<std::string> closing_names(const LoadedModel& loaded);
 
 // Reads a model. `convert`: names of faces to turn into B-spline patches when they are not.
 // Throws InputError for anything that cannot be used, also for an unknown extension.

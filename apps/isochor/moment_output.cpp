@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "isochor/base/error.h"
 #include "terminal.h"
@@ -26,11 +27,20 @@ void print_tensor(const Common& common, const char* name, const Matrix3& tensor,
 }  // namespace
 
 Moments moments_of(const LoadedModel& loaded) {
+  const std::vector<ClosingPlane>& planes = loaded.surroundings.closing;
+  const std::optional<Vec3> origin = common_point(planes);
+  if (!planes.empty() && !origin) {
+    throw InputError(
+        loaded.path, "--moments",
+        "need closing planes with a point in common; " + text_of(planes) + " have none");
+  }
   try {
 #ifdef ISOCHOR_WITH_OCCT
     if (loaded.solid && loaded.solid->moments) return moments_from(*loaded.solid->moments);
 #endif
-    return MomentForm(loaded.patches).moments(loaded.patches.points);
+    const MomentForm form(loaded.patches);
+    if (origin) return moments_from(form.integrals(loaded.patches.points, *origin));
+    return form.moments(loaded.patches.points);
   } catch (const InputError& error) {
     throw error.in_file(loaded.path);
   }

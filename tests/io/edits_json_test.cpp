@@ -119,6 +119,33 @@ TEST(EditsJson, MistakesNameThePlaceAndTheValue) {
               HasSubstr("e.json"));
 }
 
+TEST(EditsJson, ClosingPlanes) {
+  const std::string planes =
+      R"([{"symmetry": "y"}, {"plane": {"normal": [0, 0, 2], "offset": 5}}])";
+  const std::string edit = R"({"name": "a", "metric": "coefficients"})";
+  const EditScript script = parse_edits(
+      R"({"isochor_edits": 1, "close": )" + planes + R"(, "edits": [)" + edit + "]}", "f");
+  ASSERT_EQ(script.close.size(), 2u);
+  EXPECT_TRUE(script.close[0].mirror);
+  EXPECT_EQ(script.close[0].normal, Vec3::UnitY());
+  EXPECT_FALSE(script.close[1].mirror);
+  EXPECT_EQ(script.close[1].offset, 2.5);
+  const EditScript again = parse_edits(format_edits(script), "f");
+  ASSERT_EQ(again.close.size(), 2u);
+  EXPECT_TRUE(again.close[0].mirror);
+  EXPECT_EQ(again.close[1].offset, 2.5);
+  for (const char* bad :
+       {R"([{"symmetry": "w"}])", R"([{"mirror": "y"}])", R"([{"symmetry": "y", "offset": 1}])",
+        R"([{"plane": {"normal": [0, 0, 0], "offset": 1}}])",
+        R"([{"plane": {"normal": [0, 0, 1]}}])"}) {
+    EXPECT_THROW(
+        parse_edits(R"({"isochor_edits": 1, "close": )" + std::string(bad) + R"(, "edits": []})",
+                    "f"),
+        InputError)
+        << bad;
+  }
+}
+
 TEST(EditsJson, LaterFeaturesAreRefusedByName) {
   EXPECT_THAT(error_of(R"({"isochor_edits": 1, "edits": [{}]})"), HasSubstr("coefficients"));
   EXPECT_THAT(error_of(R"({"isochor_edits": 1, "edits": [{"metric": "energy"}]})"),

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <BRepAdaptor_Surface.hxx>
 #include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_MakeEdge.hxx>
 #include <BRepBuilderAPI_MakeFace.hxx>
@@ -127,6 +128,27 @@ TEST(Flux, ReversedShapeHasTheNegativeVolumeAndTheSameArea) {
   const ShapeIntegrals reversed = integrate_shape(shape.Reversed());
   EXPECT_EQ(reversed.volume, -forward.volume);
   EXPECT_EQ(reversed.area, forward.area);
+}
+
+// The flux of a field without flux through the planes of missing faces is the whole volume.
+TEST(Flux, ShapeWithoutCapsHasTheVolumeByAField) {
+  const TopoDS_Shape drum = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(1, 2, 3), gp::DY()), 2.0, 5.0);
+  const double volume = 20.0 * M_PI;
+  const FluxField field = require_field({parse_closing_plane("y=2"), parse_closing_plane("y=7")});
+  double flux = 0.0;
+  double bound = 0.0;
+  for (TopExp_Explorer it(drum, TopAbs_FACE); it.More(); it.Next()) {
+    const TopoDS_Face face = TopoDS::Face(it.Current());
+    if (BRepAdaptor_Surface(face).GetType() != GeomAbs_Cylinder) continue;
+    const FaceIntegrals wall = integrate_face(face, 0.0, 1e-9, field);
+    flux += wall.flux;
+    bound += wall.bound;
+  }
+  EXPECT_NEAR(flux, volume, bound + 1e-13 * volume);
+  EXPECT_LT(bound, 1e-11 * volume);
+  EXPECT_NEAR(integrate_shape(drum, require_field({parse_closing_plane("1,2,3,4")})).volume, volume,
+              1e-12 * volume)
+      << "on closed shapes any field will do";
 }
 
 // Second method: OpenCASCADE's adaptive integration with a tolerance (never its default).

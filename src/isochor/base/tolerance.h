@@ -55,6 +55,10 @@ inline constexpr double kQuadratureNoise = 32 * kUnitRoundoff;
 // few hundred times less than the bound of the rounding there.
 inline constexpr double kQuadratureShare = 2 * kUnitRoundoff;
 
+// Two directions of length one are the same, or perpendicular, when they miss it by less than this.
+// Dimensionless: a few hundred roundings, for normals that were computed.
+inline constexpr double kSameDirection = 1e-13;
+
 // A displacement constraint is met when |got - asked| <= kReached * diagonal. Dimensionless;
 // the solve attains about 1e-15, so this is a promise with three digits to spare.
 inline constexpr double kReached = 1e-12;

@@ -483,6 +483,7 @@ Closure closure(const PatchModel& model) {
       if (count == 0 && !is_collapsed(patch, side, classes) &&
           !folded_onto_itself(patch, side, classes)) {
         result.open_sides.push_back(label_of(model, {q, side}));
+        result.open.push_back({q, side});
       }
     }
   }

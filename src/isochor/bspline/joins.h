@@ -67,6 +67,7 @@ double join_gap(const PatchModel& model, const std::vector<Vec3>& at, const Join
 struct Closure {
   bool closed = false;
   std::vector<std::string> open_sides;         // "side v1 of face:3 (\"top\")"
+  std::vector<SideRef> open;                   // the same
   std::vector<std::string> overused_sides;     // joined to more than one other side
   std::vector<std::string> misoriented_sides;  // "side u0 of A and side u1 of B run the same way"
   // Length of the integral of the outward normal, divided by diagonal^2: zero for closed models,

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "isochor/base/vec3.h"
+#include "isochor/volume/flux_field.h"
 
 namespace isochor {
 
@@ -124,13 +125,19 @@ struct Edit {
   VolumeGoal volume;
   Method method = Method::kIsotropic;
   std::array<int, 3> axis_order = {0, 1, 2};  // kAxis
-  bool open = false;  // treat the integral of z dx dy of an open model as its volume
+  bool open = false;                // treat the integral of z dx dy of an open model as its volume
+  std::vector<ClosingPlane> close;  // as the script's; all edits of a session share theirs
   Sink sink;
 };
 
 struct EditScript {
   std::vector<Edit> edits;
+  std::vector<ClosingPlane> close = {};  // planes that close the model
 };
+
+// The planes that a script and its edits name. InputError when two edits name different ones: what
+// "keep" means would change on the way.
+std::vector<ClosingPlane> closing_planes(const EditScript& script);
 
 // The words of CONTRACT: "isotropic", "axis", "taylor".
 const char* name_of(Method method);

@@ -125,7 +125,8 @@ EditSession::EditSession(PatchModel model, Surroundings surroundings)
     : state_(std::make_unique<State>()) {
   validate(model);
   state_->surroundings = std::move(surroundings);
-  const Bounded patches = VolumeForm(model).bounded_value(model.points);
+  const FluxField field = require_field(state_->surroundings.closing);
+  const Bounded patches = VolumeForm(model, 1, field).bounded_value(model.points);
   state_->now.reference = patches.value + state_->surroundings.outside_volume;
   state_->patches_bound = patches.bound;
   state_->now.moved_patches.resize(model.patches.size());
@@ -174,7 +175,7 @@ Certificate EditSession::begin(const Edit& edit) {
   }
   const Stopwatch watch;
   PatchModel rest = refined_for(state.now.model, edit);
-  auto prepared = std::make_unique<PreparedEdit>(std::move(rest), edit);
+  auto prepared = std::make_unique<PreparedEdit>(std::move(rest), edit, state.surroundings.closing);
   state.active.emplace(State::Active{edit, std::move(prepared), state.now, {}, 0.0});
   state.active->prepare_ms = watch.milliseconds();
   std::vector<Vec3> values;

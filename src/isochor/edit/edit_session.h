@@ -7,7 +7,9 @@
 // Laws:
 //  (1) cancel restores the model of before begin; undo that of before commit; redo the other way;
 //  (2) drag(x); drag(y) leaves the same candidate as drag(y) alone;
-//  (3) in a list of edits "keep" means the volume at the start of the session, or the last target:
+//  (3) the open sides of a model closed by planes stay in their planes; beyond a mirror plane the
+//      model goes on as its mirror image, and stays as smooth across as it is;
+//  (4) in a list of edits "keep" means the volume at the start of the session, or the last target:
 //      what one edit misses by rounding, the next one makes up for.
 #pragma once
 
@@ -25,10 +27,12 @@ namespace isochor {
 
 // What surrounds the editable patches: the rest of a solid contributes a fixed volume.
 struct Surroundings {
-  bool closed = true;
+  bool closed = true;           // also when planes close it
   std::string why_open;         // when not closed: in words ("12 free edges")
   double outside_volume = 0.0;  // total minus the integral over the whole (untrimmed) patches
   double outside_bound = 0.0;   // error bound of outside_volume
+  // The planes that close it; volumes are measured with their field.
+  std::vector<ClosingPlane> closing = {};
 };
 
 class EditSession {

@@ -12,16 +12,34 @@
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/edit/extent_selection.h"
+#include "isochor/edit/mirrored_model.h"
 #include "isochor/edit/names.h"
 #include "isochor/edit/places.h"
 
 namespace isochor {
 namespace {
 
-std::vector<int> symmetry_axes(const Edit& edit) {
+// The mirror plane among the closing planes, as an axis; -1: none.
+int mirror_axis(const std::vector<ClosingPlane>& closing) {
+  int found = -1;
+  for (const ClosingPlane& plane : closing) {
+    if (!plane.mirror) continue;
+    if (found >= 0) {
+      throw InputError("", "close", "one mirror plane is supported; give the others as planes");
+    }
+    plane.normal.maxCoeff(&found);
+    if (plane.normal != Vec3::Unit(found) || plane.offset != 0.0) {
+      throw InputError("", "close", "a mirror plane must be x = 0, y = 0 or z = 0");
+    }
+  }
+  return found;
+}
+
+std::vector<int> symmetry_axes(const Edit& edit, int mirror) {
   std::vector<int> axes;
+  if (mirror >= 0) axes.push_back(mirror);
   for (const Hold& hold : edit.holds) {
-    if (hold.kind == Hold::Kind::kSymmetry) axes.push_back(hold.axis);
+    if (hold.kind == Hold::Kind::kSymmetry && hold.axis != mirror) axes.push_back(hold.axis);
   }
   if (axes.size() > 1) {
     throw InputError("", "hold",
@@ -31,25 +49,18 @@ std::vector<int> symmetry_axes(const Edit& edit) {
   return axes;
 }
 
-constexpr const char* kKeepsTheEdge = " keeps the edge";
-
-// A row as its values and coefficients, to find equal ones.
-using CoefficientSet = std::vector<std::pair<int, double>>;
-
-// The form n . (row), exactly for the doubles of n.
-CoefficientRow along(CoefficientRow row, const Vec3& normal) {
-  for (size_t k = 0; k < row.coefficient.size(); ++k) {
-    for (int a = 0; a < 3; ++a) {
-      Rational& value = row.exact[k][static_cast<size_t>(a)];
-      value *= Rational(normal[a]);
-      row.value[k][a] = value.to_double();
-    }
-  }
-  return row;
+// The same points without the patches of the mirror image.
+PatchModel first_patches(PatchModel whole, const PatchModel& rest) {
+  const auto images = static_cast<std::ptrdiff_t>(rest.patches.size());
+  whole.patches.erase(whole.patches.begin() + images, whole.patches.end());
+  return whole;
 }
 
-std::vector<DisplacementSpace::EdgeRule> edges_of(const PatchModel& model, const Edit& edit) {
+// For the model and, when there is one, its mirror image.
+std::vector<DisplacementSpace::EdgeRule> edges_of(const PatchModel& model, const Edit& edit,
+                                                  bool mirrored) {
   std::vector<DisplacementSpace::EdgeRule> rules;
+  const int images = static_cast<int>(model.patches.size());
   for (size_t k = 0; k < edit.edge_continuity.size(); ++k) {
     const EdgeContinuity& item = edit.edge_continuity[k];
     const int a = find_patch(model, item.edge[0]);
@@ -62,17 +73,23 @@ std::vector<DisplacementSpace::EdgeRule> edges_of(const PatchModel& model, const
                        "\"" + item.edge[0] + "\" and \"" + item.edge[1] + "\" share no edge");
     }
     rules.push_back({a, b, item.keep});
+    if (mirrored) rules.push_back({a + images, b + images, item.keep});
   }
   return rules;
 }
 
 }  // namespace
 
-PreparedEdit::PreparedEdit(PatchModel rest, const Edit& edit)
+PreparedEdit::PreparedEdit(PatchModel rest, const Edit& edit,
+                           const std::vector<ClosingPlane>& closing)
     : rest_(std::move(rest)),
+      closing_(closing),
+      whole_(mirror_axis(closing) < 0 ? rest_ : mirrored_model(rest_, mirror_axis(closing))),
       edit_(edit),
-      volume_(rest_),
-      space_(rest_, {edit.scale, edit.continuity, symmetry_axes(edit), edges_of(rest_, edit)}),
+      volume_(rest_, 1, require_field(closing)),
+      whole_volume_(first_patches(whole_, rest_), 1, require_field(closing)),
+      space_(whole_, {edit.scale, edit.continuity, symmetry_axes(edit, mirror_axis(closing)),
+                      edges_of(rest_, edit, mirror_axis(closing) >= 0)}),
       size_(diagonal(rest_)) {
   for (size_t k = 0; k < edit.moves.size(); ++k) {
     const std::string where = "move[" + std::to_string(k) + "]";
@@ -84,6 +101,9 @@ PreparedEdit::PreparedEdit(PatchModel rest, const Edit& edit)
     }
   }
   resolve_holds();
+  for (const ClosingPlane& plane : closing_) {
+    if (!plane.mirror) hold_closing_plane(plane);  // a mirror plane is held by symmetry
+  }
   select_coefficients();
 }
 
@@ -122,104 +142,20 @@ ResolvedPlace PreparedEdit::resolve_coefficient(const Place& place,
   return resolved;
 }
 
-void PreparedEdit::resolve_holds() {
-  for (size_t k = 0; k < edit_.holds.size(); ++k) {
-    const Hold& hold = edit_.holds[k];
-    const std::string name = "hold[" + std::to_string(k) + "]";
-    switch (hold.kind) {
-      case Hold::Kind::kPlace:
-        holds_.push_back(resolve(hold.place, name));
-        hold_names_.push_back(name);
-        break;
-      case Hold::Kind::kNormal:
-        hold_normal(hold.place, name + ".normal");
-        break;
-      case Hold::Kind::kEdge:
-        lock_edge(hold, name + ".edge");
-        break;
-      case Hold::Kind::kPlane:
-        hold_plane(hold, name + ".plane");
-        break;
-      case Hold::Kind::kSymmetry:
-        break;  // the space has it
-    }
-  }
-}
-
-void PreparedEdit::lock_edge(const Hold& hold, const std::string& name) {
-  const int a = find_patch(rest_, hold.edge[0]);
-  const int b = find_patch(rest_, hold.edge[1]);
-  std::vector<int> points;
-  for (const Join& join : rest_.joins) {
-    const bool same =
-        (join.a.patch == a && join.b.patch == b) || (join.a.patch == b && join.b.patch == a);
-    if (!same) continue;
-    for (const SideRef& side : {join.a, join.b}) {
-      const Patch& patch = rest_.patches[static_cast<size_t>(side.patch)];
-      const KnotVector& across = is_u_side(side.side) ? patch.u_knots : patch.v_knots;
-      const int rows = boundary_rows(across, is_begin_side(side.side), 0);
-      for (int depth = 0; depth < rows; ++depth) {
-        for (const auto& [i, j] : side_indices(patch, side.side, depth)) {
-          points.push_back(patch.point(i, j));
-        }
-      }
-    }
-  }
-  if (points.empty()) {
-    throw InputError("", name,
-                     "\"" + hold.edge[0] + "\" and \"" + hold.edge[1] +
-                         "\" share no edge along which both can move");
-  }
-  space_.lock_points(points, name + kKeepsTheEdge);
-}
-
-// The normal n stays when the tangents' displacements have no part along it: n . delta_u = 0 and
-// n . delta_v = 0, since n . S_u = n . S_v = 0 already. Linear, and exact for any displacement.
-void PreparedEdit::hold_normal(const Place& place, const std::string& name) {
-  const ResolvedPlace at = resolve(place, name);
-  const Vec3 normal = rest_.surface(at.patch).normal(at.uv.u, at.uv.v);
-  if (normal == Vec3::Zero()) {
-    throw InputError("", name, at.text + " has no normal: the surface is singular there");
-  }
-  for (SurfaceForm form : {SurfaceForm::kAlongU, SurfaceForm::kAlongV}) {
-    normals_.push_back({name, along(space_.surface_row(rest_, at.patch, at.uv, form), normal),
-                        Vec3::Zero(), 7, true});
-  }
-}
-
-void PreparedEdit::hold_plane(const Hold& hold, const std::string& name) {
-  const Vec3 normal = hold.plane_normal.normalized();
-  std::set<CoefficientSet> seen;  // tied points have one row
-  bool any = false;
-  for (size_t i = 0; i < rest_.points.size(); ++i) {
-    const double off = normal.dot(rest_.points[i] - hold.plane_point);
-    if (!(std::abs(off) <= kCoincident * size_)) continue;
-    CoefficientRow row = space_.point_row(static_cast<int>(i));
-    if (row.coefficient.empty()) continue;  // a point that no patch uses
-    any = true;
-    CoefficientSet key;
-    for (size_t k = 0; k < row.coefficient.size(); ++k) {
-      key.emplace_back(row.coefficient[k], row.value[k].x());
-    }
-    if (!seen.insert(std::move(key)).second) continue;
-    kept_.push_back({name, along(std::move(row), normal), Vec3::Zero(), 7, true});
-  }
-  if (!any) throw InputError("", name, "no control point of the model lies in this plane");
-}
-
 void PreparedEdit::select_coefficients() {
   std::vector<ExtentSeed> seeds;
   for (const ResolvedPlace& move : moves_) {
     seeds.push_back({move.position, move.row.coefficient});
-    for (int axis : symmetry_axes(edit_)) {  // a coefficient has its place on either side
+    for (int axis : symmetry_axes(
+             edit_, mirror_axis(closing_))) {  // a coefficient has its place on either side
       Vec3 image = move.position;
       image[axis] = -image[axis];
       seeds.push_back({image, move.row.coefficient});
     }
   }
-  extent_ = select_extent(rest_, space_, edit_.extent, seeds);
+  extent_ = select_extent(whole_, space_, edit_.extent, seeds);
   sink_ = edit_.sink.kind == Sink::Kind::kOtherExtent
-              ? select_extent(rest_, space_, edit_.sink.extent, seeds)
+              ? select_extent(whole_, space_, edit_.sink.extent, seeds)
               : extent_;
 }
 
@@ -230,8 +166,8 @@ Vec3 PreparedEdit::displacement(size_t k, const Vec3& value) const {
 void PreparedEdit::make_solver() {
   SolveProblem problem;
   problem.space = &space_;
-  problem.volume = &volume_;
-  problem.points = &rest_.points;
+  problem.volume = &whole_volume_;
+  problem.points = &whole_.points;
   problem.extent = extent_;
   problem.sink = sink_;
   if (edit_.sink.kind == Sink::Kind::kDirection) problem.sink_direction = edit_.sink.direction;
@@ -285,7 +221,7 @@ std::vector<std::string> PreparedEdit::holds_that_lock(const CoefficientRow& row
     const bool symmetry = hold.kind == Hold::Kind::kSymmetry;
     if (!symmetry && hold.kind != Hold::Kind::kEdge) continue;
     const std::string name = "hold[" + std::to_string(k) + (symmetry ? "].symmetry" : "].edge");
-    const std::string reason = name + kKeepsTheEdge;
+    const std::string reason = name + internal::kKeepsTheEdge;
     bool locks = symmetry;
     for (size_t i = 0; i < row.coefficient.size(); ++i) {
       const int c = row.coefficient[i];
@@ -303,6 +239,7 @@ std::vector<std::string> PreparedEdit::holds_that_lock(const CoefficientRow& row
 
 std::vector<Vec3> PreparedEdit::displaced(const std::vector<Vec3>& delta) const {
   std::vector<Vec3> points = space_.expand(delta);
+  points.resize(rest_.points.size());
   for (size_t i = 0; i < points.size(); ++i) points[i] += rest_.points[i];
   return points;
 }
@@ -332,7 +269,7 @@ void PreparedEdit::describe(Certificate& certificate) const {
     if (space_.locked_axes(c) != 7) {
       ++certificate.coefficients;
     } else {
-      const Patch& patch = rest_.patches[static_cast<size_t>(space_.patch_of(c))];
+      const Patch& patch = whole_.patches[static_cast<size_t>(space_.patch_of(c))];
       ++locked[{label_of(patch), space_.lock_reason(c)}];
     }
   }

@@ -14,6 +14,11 @@
 
 namespace isochor {
 
+namespace internal {
+// The reason of locks by "hold": {"edge": ...} is the hold's name and this.
+inline constexpr const char* kKeepsTheEdge = " keeps the edge";
+}  // namespace internal
+
 // A place of the edit on this model.
 struct ResolvedPlace {
   std::string text;  // for people
@@ -26,8 +31,10 @@ struct ResolvedPlace {
 
 class PreparedEdit {
  public:
-  // `rest` is the refined model on which the edit acts. Throws InputError.
-  PreparedEdit(PatchModel rest, const Edit& edit);
+  // `rest` is the refined model on which the edit acts; `closing`, the planes that close it, hold
+  // its free sides. With a mirror plane among them the freedom is that of the model and its mirror
+  // image together (mirrored_model.h). Throws InputError.
+  PreparedEdit(PatchModel rest, const Edit& edit, const std::vector<ClosingPlane>& closing = {});
   PreparedEdit(const PreparedEdit&) = delete;  // the solver points into this object
   PreparedEdit& operator=(const PreparedEdit&) = delete;
 
@@ -57,13 +64,17 @@ class PreparedEdit {
   void lock_edge(const Hold& hold, const std::string& name);
   void hold_normal(const Place& place, const std::string& name);
   void hold_plane(const Hold& hold, const std::string& name);
+  void hold_closing_plane(const ClosingPlane& plane);
   void make_solver();
   std::vector<std::string> holds_that_lock(const CoefficientRow& row) const;
   void select_coefficients();
 
   PatchModel rest_;
+  std::vector<ClosingPlane> closing_;
+  PatchModel whole_;  // rest_, or rest_ and its mirror image
   Edit edit_;
-  VolumeForm volume_;
+  VolumeForm volume_;        // of the rest
+  VolumeForm whole_volume_;  // the same, on the points of the whole
   DisplacementSpace space_;
   double size_ = 1.0;
   std::vector<ResolvedPlace> moves_, holds_;

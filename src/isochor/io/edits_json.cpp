@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "isochor/base/error.h"
+#include "isochor/io/closing_json.h"
 #include "isochor/io/json_reader.h"
 
 namespace isochor {
@@ -354,6 +355,7 @@ Edit parse_edit(const JsonValue& value) {
   object.with("volume", [&](const JsonValue& volume) { edit.volume = parse_volume(volume); });
   object.with("sink", [&](const JsonValue& sink) { edit.sink = parse_sink(sink); });
   object.with("open", [&](const JsonValue& open) { edit.open = open.boolean(); });
+  object.with("close", [&](const JsonValue& list) { edit.close = internal::parse_close(list); });
   parse_solver_keys(object, edit);
   object.finish();
   return edit;
@@ -370,6 +372,7 @@ EditScript parse_edits(const std::string& text, const std::string& file) {
       version.fail("defaults of version " + version.print() + " are not known");
   });
   EditScript script;
+  object.with("close", [&](const JsonValue& list) { script.close = internal::parse_close(list); });
   const JsonValue edits = object["edits"];
   for (size_t i = 0; i < edits.size(); ++i) script.edits.push_back(parse_edit(edits.at(i)));
   object.finish();

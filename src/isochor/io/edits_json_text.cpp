@@ -1,4 +1,5 @@
 // Edit scripts as text; reading them is in edits_json.cpp.
+#include "isochor/io/closing_json.h"
 #include "isochor/io/edits_json.h"
 #include "isochor/io/json_reader.h"
 
@@ -134,6 +135,7 @@ Json format_edit(const Edit& edit) {
   }
   out["metric"] = "coefficients";
   if (edit.open) out["open"] = true;
+  if (!edit.close.empty()) out["close"] = internal::format_close(edit.close);
   if (edit.sink.kind == Sink::Kind::kOtherExtent) out["sink"] = format_extent(edit.sink.extent);
   if (edit.sink.kind == Sink::Kind::kDirection) {
     out["sink"] = {{"direction", numbers(edit.sink.direction)}};
@@ -147,6 +149,7 @@ std::string format_edits(const EditScript& script) {
   Json document;
   document["isochor_edits"] = 1;
   document["defaults"] = 1;
+  if (!script.close.empty()) document["close"] = internal::format_close(script.close);
   document["edits"] = Json::array();
   for (const Edit& edit : script.edits) document["edits"].push_back(format_edit(edit));
   return document.dump(2) + "\n";

@@ -1,5 +1,6 @@
 #include "isochor/step/document_model.h"
 
+#include <BRepAdaptor_Curve.hxx>
 #include <BRep_Tool.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <Standard_Failure.hxx>
@@ -9,6 +10,7 @@
 #include <TopoDS.hxx>
 #include <TopoDS_Iterator.hxx>
 #include <XSControl_TransferReader.hxx>
+#include <sstream>
 
 #include "isochor/base/error.h"
 #include "isochor/step/brep_joins.h"
@@ -77,18 +79,21 @@ FaceFacts face_facts(const BrepTable& table, int f, const Document& document) {
 }
 
 // Fluxes of all faces; volume and area of the shape, where a face may occur more than once.
-void integrate(const BrepTable& table, const Document& document, SolidModel& model) {
+void integrate(const BrepTable& table, const Document& document,
+               const std::vector<ClosingPlane>& close, SolidModel& model) {
   std::vector<FaceIntegrals> integrals;
+  const FluxField field = require_field(close);
+  const double z0 = close.empty() ? table.z0 : 0.0;
   for (size_t f = 0; f < table.faces.size(); ++f) {
     const FaceRecord& face = table.faces[f];
     tell_progress(static_cast<double>(f) / static_cast<double>(table.faces.size()), "measuring");
     integrals.push_back(face.surface.geometry.IsNull()
                             ? FaceIntegrals{}
                             : integrate_face(face.surface.geometry, face.loops, face.trim.kind,
-                                             face.reversed(), table.z0));
+                                             face.reversed(), z0, field));
     model.faces[f].area = integrals.back().area;
-    model.faces[f].flux = integrals.back().flux_about_zero(table.z0);
-    model.faces[f].flux_bound = integrals.back().bound_about_zero(table.z0);
+    model.faces[f].flux = integrals.back().flux_about_zero(z0);
+    model.faces[f].flux_bound = integrals.back().bound_about_zero(z0);
   }
   for (TopExp_Explorer it(document.shape, TopAbs_FACE); it.More(); it.Next()) {
     const auto f = static_cast<size_t>(document.faces.FindIndex(it.Current())) - 1;
@@ -103,6 +108,30 @@ void note_faces_without_area(SolidModel& model, double diagonal) {
   for (const FaceFacts& face : model.faces) {
     if (!(face.area > kNoArea * diagonal * diagonal)) model.import.no_area.push_back(face.handle);
   }
+}
+
+// Edges of one face only, with points along them.
+std::vector<OpenEdge> open_edges(const BrepTable& table) {
+  constexpr int kSteps = 32;
+  std::vector<OpenEdge> edges;
+  for (const EdgeRecord& record : table.edges) {
+    if (record.sites.size() != 1 || BRep_Tool::Degenerated(record.edge)) continue;
+    const BRepAdaptor_Curve curve(record.edge);
+    OpenEdge edge;
+    for (int k = 0; k <= kSteps; ++k) {
+      const double share = static_cast<double>(k) / kSteps;
+      const gp_Pnt p =
+          curve.Value((1.0 - share) * curve.FirstParameter() + share * curve.LastParameter());
+      edge.points.emplace_back(p.X(), p.Y(), p.Z());
+    }
+    std::ostringstream label;
+    label.precision(4);
+    label << "the edge of " << table.label(record.sites.front().face) << " at ("
+          << edge.points[kSteps / 2].transpose() << ")";
+    edge.label = label.str();
+    edges.push_back(std::move(edge));
+  }
+  return edges;
 }
 
 void convert(BrepTable& table, const std::vector<int>& faces, const std::string& path) {
@@ -156,10 +185,14 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   }
   {
     const ProgressPart part(0.5, 1.0);
-    integrate(table, document, model);
+    integrate(table, document, options.close, model);
   }
   note_faces_without_area(model, table.diagonal);
+  model.open_edges = open_edges(table);
   if (options.moments && model.facts.closed) model.moments = shape_moments(document.shape);
+  if (const auto origin = common_point(options.close); options.moments && origin) {
+    model.moments = shape_moments(document.shape, *origin);
+  }
   if (!options.section.empty() && model.facts.closed) {
     const auto& plane = options.section;
     model.section = shape_section(document.shape, Vec3(plane[0], plane[1], plane[2]), plane[3]);

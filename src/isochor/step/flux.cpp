@@ -19,8 +19,8 @@ double FaceIntegrals::bound_about_zero(double z0) const {
 
 FaceIntegrals integrate_face(const Handle(Geom_Surface) & surface,
                              const std::vector<FaceLoop>& loops, TrimKind kind, bool reversed,
-                             double z0) {
-  const auto region = integrate_region(surface, loops, kind, FluxKind{z0});
+                             double z0, const FluxField& field) {
+  const auto region = integrate_region(surface, loops, kind, FluxKind{z0, field});
   const FluxSums& sums = region.sums;
   const double sign = reversed ? -1.0 : 1.0;
   FaceIntegrals result;
@@ -36,25 +36,26 @@ FaceIntegrals integrate_face(const Handle(Geom_Surface) & surface,
   return result;
 }
 
-FaceIntegrals integrate_face(const TopoDS_Face& face, double z0, double distance) {
+FaceIntegrals integrate_face(const TopoDS_Face& face, double z0, double distance,
+                             const FluxField& field) {
   const Handle(Geom_Surface) surface = BRep_Tool::Surface(face);
   const std::vector<FaceLoop> loops = face_loops(face);
   const TrimKind kind = classify_sides(surface, loops, distance).kind;
-  return integrate_face(surface, loops, kind, face.Orientation() == TopAbs_REVERSED, z0);
+  return integrate_face(surface, loops, kind, face.Orientation() == TopAbs_REVERSED, z0, field);
 }
 
-ShapeIntegrals integrate_shape(const TopoDS_Shape& shape) {
+ShapeIntegrals integrate_shape(const TopoDS_Shape& shape, const std::optional<FluxField>& field) {
   ShapeIntegrals result;
   Bnd_Box box;
   BRepBndLib::Add(shape, box, Standard_False);
   double diagonal = 0.0;
   if (!box.IsVoid()) {
-    result.z0 = 0.5 * (box.CornerMin().Z() + box.CornerMax().Z());
+    if (!field) result.z0 = 0.5 * (box.CornerMin().Z() + box.CornerMax().Z());
     diagonal = box.CornerMin().Distance(box.CornerMax());
   }
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-    result.faces.push_back(
-        integrate_face(TopoDS::Face(it.Current()), result.z0, kSideDistance * diagonal));
+    result.faces.push_back(integrate_face(TopoDS::Face(it.Current()), result.z0,
+                                          kSideDistance * diagonal, field.value_or(FluxField{})));
     result.volume += result.faces.back().flux;
     result.bound += result.faces.back().bound;
     result.area += result.faces.back().area;

@@ -11,6 +11,8 @@
 //  (2) a hole is subtracted: face with hole + the face that fills the hole == face without;
 //  (3) reversing a face negates its flux and projected area, not its area;
 //  (4) |flux - true value| <= bound in all tested shapes (an estimate, not a proof).
+// With a field (volume/flux_field.h) all of this holds for its frame: z is slope . x - level, and
+// dx dy the area seen along its direction.
 // OpenCASCADE's own default volume is wrong by up to 8 % on B-spline solids: never compare with it.
 //
 // Internal to the step layer (OpenCASCADE types).
@@ -18,6 +20,7 @@
 
 #include <Geom_Surface.hxx>
 #include <TopoDS_Face.hxx>
+#include <optional>
 #include <vector>
 
 #include "isochor/step/face_loops.h"
@@ -41,19 +44,22 @@ struct FaceIntegrals {
 // Integrates one face of a shape. Pass the same z0 for all faces of a shape, best its middle.
 // `distance` as in classify_trim: faces that use their whole surface are integrated over it
 // exactly, not along curves that follow its sides within a tolerance.
-FaceIntegrals integrate_face(const TopoDS_Face& face, double z0, double distance);
+FaceIntegrals integrate_face(const TopoDS_Face& face, double z0, double distance,
+                             const FluxField& field = {});
 
 // The same for parts that are at hand. `surface` carries the location of the face.
 FaceIntegrals integrate_face(const Handle(Geom_Surface) & surface,
                              const std::vector<FaceLoop>& loops, TrimKind kind, bool reversed,
-                             double z0);
+                             double z0, const FluxField& field = {});
 
 // The volume of all faces of a shape, added up, and what a common origin is worth.
 struct ShapeIntegrals {
   double volume = 0.0, bound = 0.0, area = 0.0;
-  double z0 = 0.0;                   // the middle of the shape's box
+  double z0 = 0.0;                   // the middle of the shape's box; zero with closing planes
   std::vector<FaceIntegrals> faces;  // as often as they occur, in the order of TopExp_Explorer
 };
-ShapeIntegrals integrate_shape(const TopoDS_Shape& shape);
+// `field`: that of the planes which close the shape; the volume is then the closed body's.
+ShapeIntegrals integrate_shape(const TopoDS_Shape& shape,
+                               const std::optional<FluxField>& field = {});
 
 }  // namespace isochor::internal

@@ -16,6 +16,7 @@
 
 #include "isochor/bspline/surface.h"
 #include "isochor/step/trim_region.h"
+#include "isochor/volume/flux_field.h"
 #include "isochor/volume/moments.h"
 
 namespace isochor::internal {
@@ -46,13 +47,14 @@ struct FluxSums {
   double largest_noise() const { return static_cast<double>(noise); }
 };
 
-// The flux of (0, 0, z - z0).
+// The flux of field - (a shift of its level by z0); without a field, of (0, 0, z - z0).
 struct FluxKind {
   using Sums = FluxSums;
   static constexpr int kFactors = 3;      // the integrand has degree 3d - 1
   static constexpr int kLeastPoints = 6;  // areas are not polynomial: a few more than flux needs
 
   double z0 = 0.0;
+  FluxField field = {};
   void add(const SurfacePoint& at, double weight, FluxSums& sums) const;
 };
 

@@ -24,15 +24,19 @@ void FluxSums::add_distances(const FluxSums& a, const FluxSums& b) {
 }
 
 void FluxKind::add(const SurfacePoint& at, double w, FluxSums& sums) const {
-  const double height = at.p.Z() - z0;
-  const double jacobian = at.du.X() * at.dv.Y() - at.dv.X() * at.du.Y();
+  const Vec3& c = field.slope;
+  const Vec3& b = field.direction;
+  const double height = (c.x() * at.p.X() + c.y() * at.p.Y() + c.z() * at.p.Z() - field.level) - z0;
+  const double jacobian = b.x() * (at.du.Y() * at.dv.Z() - at.dv.Y() * at.du.Z()) +
+                          b.y() * (at.du.Z() * at.dv.X() - at.dv.Z() * at.du.X()) +
+                          b.z() * (at.du.X() * at.dv.Y() - at.dv.X() * at.du.Y());
   sums.flux += w * height * jacobian;
   sums.projected += w * jacobian;
   sums.area += w * at.du.Crossed(at.dv).Magnitude();
   const double mixed =
       std::abs(w) * (at.noisy_u * at.dv.Magnitude() + at.noisy_v * at.du.Magnitude());
   sums.size += std::abs(w * height * jacobian);
-  sums.noise += std::abs(height) * mixed + at.reach * std::abs(w * jacobian);
+  sums.noise += std::abs(height) * mixed + c.norm() * at.reach * std::abs(w * jacobian);
   sums.projected_noise += mixed;
 }
 

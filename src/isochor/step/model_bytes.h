@@ -73,6 +73,10 @@ void transfer(Io& io, ShapeFacts& f) {
      f.diagonal, f.names, f.coloured);
 }
 template <typename Io>
+void transfer(Io& io, OpenEdge& f) {
+  io(f.label, f.points);
+}
+template <typename Io>
 void transfer(Io& io, MomentIntegrals& f) {
   io(f.origin, f.value, f.bound);
 }
@@ -91,8 +95,8 @@ void transfer(Io& io, ImportAccount& f) {
 }
 template <typename Io>
 void transfer(Io& io, SolidModel& f) {
-  io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.moments, f.section,
-     f.import, f.notices);
+  io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.open_edges,
+     f.moments, f.section, f.import, f.notices);
 }
 template <typename Io>
 void transfer(Io& io, WriteReport& f) {

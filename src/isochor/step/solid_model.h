@@ -14,6 +14,7 @@
 #include "isochor/base/progress.h"
 #include "isochor/bspline/patch_model.h"
 #include "isochor/step/import_account.h"
+#include "isochor/volume/closing.h"
 #include "isochor/volume/moments.h"
 #include "isochor/volume/section.h"
 
@@ -34,7 +35,7 @@ struct FaceFacts {
   int patch = -1;            // index into SolidModel::patches, or -1
   std::string not_editable;  // when patch < 0: why, in words a designer understands
   double area = 0.0;
-  double flux = 0.0;        // the integral of z dx dy over the oriented face
+  double flux = 0.0;        // of z dx dy, or of the closing planes' field, over the oriented face
   double flux_bound = 0.0;  // estimated error of `flux`
   double tolerance = 0.0;
 };
@@ -81,6 +82,7 @@ struct SolidModel {
   std::vector<FaceFacts> faces;
   std::vector<EdgeFacts> edges;
   ShapeFacts facts;
+  std::vector<OpenEdge> open_edges;        // edges of one face only
   std::optional<MomentIntegrals> moments;  // when asked for and the shape is closed
   std::optional<Section> section;          // the same
   ImportAccount import;
@@ -97,6 +99,9 @@ struct ReadOptions {
   std::vector<int> convert;     // 0-based faces to turn into B-spline patches although they are not
   bool moments = false;         // also the moment integrals, which cost several times the volume
   std::vector<double> section;  // also the section by this plane, NX, NY, NZ, H; or empty
+  // Planes that close the shape: fluxes, volume and moments are taken with a field that has no flux
+  // through them. Whether they close it is for the caller to judge (open_edges).
+  std::vector<ClosingPlane> close;
   BridgeLimits limits;
   Watch watch;
 };

@@ -33,6 +33,14 @@ void add_face(const TopoDS_Face& face, double distance, const MomentKind& kind, 
 }  // namespace
 
 MomentIntegrals shape_moments(const TopoDS_Shape& shape) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, Standard_False);
+  if (box.IsVoid()) return {};
+  const gp_XYZ middle = 0.5 * box.CornerMin().XYZ() + 0.5 * box.CornerMax().XYZ();
+  return shape_moments(shape, Vec3(middle.X(), middle.Y(), middle.Z()));
+}
+
+MomentIntegrals shape_moments(const TopoDS_Shape& shape, const Vec3& origin) {
   MomentIntegrals result;
   Bnd_Box box;
   BRepBndLib::Add(shape, box, Standard_False);
@@ -40,8 +48,7 @@ MomentIntegrals shape_moments(const TopoDS_Shape& shape) {
   const gp_XYZ low = box.CornerMin().XYZ();
   const gp_XYZ high = box.CornerMax().XYZ();
   const double diagonal = (high - low).Modulus();
-  const gp_XYZ middle = 0.5 * low + 0.5 * high;
-  result.origin = Vec3(middle.X(), middle.Y(), middle.Z());
+  result.origin = origin;
   // A power of two: no rounding when lengths are scaled.
   const MomentKind kind{result.origin, std::exp2(std::ilogb(0.5 * diagonal))};
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {

@@ -20,5 +20,7 @@ namespace isochor::internal {
 // About the middle of the shape's box. Bounds are estimates, like those of flux.h, and infinite
 // when loops do not close. Meaningful for closed shapes only.
 MomentIntegrals shape_moments(const TopoDS_Shape& shape);
+// About this origin: of a shape closed by planes that all pass through it.
+MomentIntegrals shape_moments(const TopoDS_Shape& shape, const Vec3& origin);
 
 }  // namespace isochor::internal

@@ -148,7 +148,14 @@ void VolumeForm::Data::find_rims(const PatchModel& model) {
   rational_rim = Rim(with_weights, forms, x_origin);
 }
 
-VolumeForm::VolumeForm(const PatchModel& model, int threads) {
+VolumeForm::VolumeForm(const PatchModel& model, int threads, const FluxField& field) {
+  if (const FluxFrame frame(field); !frame.plain()) {
+    PatchModel turned = model;
+    turned.points = frame.points(model.points);
+    *this = VolumeForm(turned, threads);
+    frame_ = frame;
+    return;
+  }
   auto data = std::make_shared<Data>();
   data->uses.resize(model.points.size());
   TableCache tables;
@@ -307,6 +314,7 @@ std::vector<Element> VolumeForm::Data::rational_among(const std::vector<Element>
 }
 
 double VolumeForm::value(const std::vector<Vec3>& points) const {
+  if (!frame_.plain()) return local().value(frame_.points(points));
   const Data& data = *data_;
   data.require_fits(points);
   double sum = data.contraction->value(points, data.height, data.threads);
@@ -316,6 +324,11 @@ double VolumeForm::value(const std::vector<Vec3>& points) const {
 }
 
 ValueAndGradient VolumeForm::value_and_gradient(const std::vector<Vec3>& points) const {
+  if (!frame_.plain()) {
+    ValueAndGradient turned = local().value_and_gradient(frame_.points(points));
+    frame_.pull_back(turned.gradient);
+    return turned;
+  }
   const Data& data = *data_;
   data.require_fits(points);
   ValueAndGradient result = data.contraction->value_and_gradient(points, data.height, data.threads);
@@ -336,6 +349,7 @@ std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points) const {
 }
 
 double VolumeForm::value(const std::vector<Vec3>& points, const Support& support) const {
+  if (!frame_.plain()) return local().value(frame_.points(points), support);
   const double local = total(data_->element_values(points, support.elements, false));
   if (data_->height == 0.0) return local;
   return local + data_->height * data_->rim.area(points, data_->rim.elements_of(support.row_of));
@@ -343,6 +357,11 @@ double VolumeForm::value(const std::vector<Vec3>& points, const Support& support
 
 std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points,
                                        const Support& support) const {
+  if (!frame_.plain()) {
+    std::vector<Vec3> turned = local().gradient(frame_.points(points), support);
+    frame_.pull_back(turned);
+    return turned;
+  }
   const Data& data = *data_;
   data.require_fits(points);
   std::vector<Vec3> rows(support.points.size(), Vec3::Zero());
@@ -358,6 +377,9 @@ std::vector<Vec3> VolumeForm::gradient(const std::vector<Vec3>& points,
 LineCubic VolumeForm::line_cubic(const std::vector<Vec3>& points,
                                  const std::vector<Vec3>& directions,
                                  const Support& support) const {
+  if (!frame_.plain()) {
+    return local().line_cubic(frame_.points(points), frame_.directions(directions), support);
+  }
   data_->require_fits(points);
   data_->require_fits(directions);
   std::array<CompensatedSum, 3> sums;
@@ -384,6 +406,11 @@ double VolumeForm::change(const std::vector<Vec3>& before, const std::vector<Vec
 }
 
 Bounded VolumeForm::bounded_value(const std::vector<Vec3>& points) const {
+  if (!frame_.plain()) {
+    Bounded turned = local().bounded_value(frame_.points(points));
+    turned.bound += frame_bound(points, whole().points);
+    return turned;
+  }
   const Data& data = *data_;
   data.require_fits(points);
   const std::vector<Patch>& patches = data.polynomial.patches;
@@ -410,6 +437,11 @@ Bounded VolumeForm::bounded_value(const std::vector<Vec3>& points) const {
 
 Bounded VolumeForm::bounded_change(const std::vector<Vec3>& before, const std::vector<Vec3>& after,
                                    const Support& support) const {
+  if (!frame_.plain()) {
+    Bounded turned = local().bounded_change(frame_.points(before), frame_.points(after), support);
+    turned.bound += frame_bound(before, support.points) + frame_bound(after, support.points);
+    return turned;
+  }
   const Data& data = *data_;
   data.require_fits(before);
   data.require_fits(after);
@@ -435,6 +467,11 @@ Bounded VolumeForm::bounded_change(const std::vector<Vec3>& before, const std::v
 }
 
 Bounded VolumeForm::quadrature_value(const std::vector<Vec3>& points) const {
+  if (!frame_.plain()) {
+    Bounded turned = local().quadrature_value(frame_.points(points));
+    turned.bound += frame_bound(points, whole().points);
+    return turned;
+  }
   const Data& data = *data_;
   double bound = total(data.element_values(points, data.elements, true));
   double sum = total(data.element_values(points, data.elements, false));

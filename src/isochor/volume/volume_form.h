@@ -19,6 +19,12 @@
 // h, and h times the projected area is added as an integral over the rim (see rim.h): nothing is
 // lost on closed models, and open models keep the meaning of V.
 //
+// A model that planes close is measured with a field that has no flux through them
+// (flux_field.h): V is then the volume of the closed body as long as its rim stays in the planes.
+// All of the above holds in the coordinates of the field's frame; gradients are turned back. Where
+// the frame rounds the points (planes that are not coordinate planes through the origin), bounds
+// hold an estimate of that to first order.
+//
 // Laws (each is a test of that name in tests/volume/volume_form_test.cpp):
 //  (1) translation:  V(p + t) == V(p)                     (closed models only)
 //  (2) linear map:   V(p A^T) == det(A) V(p)              (closed models only)
@@ -40,6 +46,7 @@
 #include "isochor/bspline/patch_model.h"
 #include "isochor/volume/bounded.h"
 #include "isochor/volume/contraction.h"
+#include "isochor/volume/flux_field.h"
 
 namespace isochor {
 
@@ -75,7 +82,7 @@ class VolumeForm {
   // Uses knots, weights and orientation of the model's patches; its points only to see where
   // the model lies (for h). `threads`: how many the functions of all points may use; no
   // bit depends on it.
-  explicit VolumeForm(const PatchModel& model, int threads = 1);
+  explicit VolumeForm(const PatchModel& model, int threads = 1, const FluxField& field = {});
 
   // The number of rows that point tables must have.
   int point_count() const;
@@ -121,6 +128,12 @@ class VolumeForm {
 
  private:
   struct Data;
+  // The same in the coordinates of the frame.
+  VolumeForm local() const;
+  // What rounding of the frame's coordinates may do to the value; zero for exact frames.
+  double frame_bound(const std::vector<Vec3>& points, const std::vector<int>& moved) const;
+
+  FluxFrame frame_;
   std::shared_ptr<const Data> data_;
 };
 
