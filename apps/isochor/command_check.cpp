@@ -1,74 +1,107 @@
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
+#include "check_picture.h"
 #include "commands.h"
 #include "isochor/base/error.h"
-#include "isochor/bspline/joins.h"
+#include "isochor/volume/findings.h"
+#include "model_picture.h"
 #include "model_source.h"
 #include "terminal.h"
 #ifdef ISOCHOR_WITH_OCCT
 #include "import_output.h"
+#include "isochor/step/solid_findings.h"
 #endif
 
 namespace isochor::app {
 namespace {
 
-// Findings of one model: empty when it is fit for use.
-std::vector<std::string> findings_of(const LoadedModel& loaded) {
-  std::vector<std::string> findings;
+constexpr double kRadians = 3.14159265358979323846 / 180.0;
+
+CheckedModel subject_of(const LoadedModel& loaded) {
+  const Surroundings& around = loaded.surroundings;
 #ifdef ISOCHOR_WITH_OCCT
   if (loaded.solid) {
-    const ShapeFacts& facts = loaded.solid->facts;
-    findings = import_findings(loaded.solid->import);
-    findings.insert(findings.end(), facts.defects.begin(), facts.defects.end());
-    if (!facts.valid && facts.defects.empty()) findings.emplace_back("the shape is not valid");
-    const bool closed = loaded.surroundings.closed;  // by itself or by planes
-    if (!closed) findings.push_back("open: " + loaded.surroundings.why_open);
-    if (closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
-    if (closed && loaded.volume_bound >= std::abs(loaded.volume)) {
-      findings.push_back(format("the volume is not determined: %.3g, error at most %.2g",
-                                loaded.volume, loaded.volume_bound));
-    }
-    return findings;
+    CheckedModel model = checked(*loaded.solid, around.closed, around.why_open);
+    model.import_faults = import_findings(loaded.solid->import);
+    return model;
   }
 #endif
-  const Closure closed = closure(loaded.patches);
-  if (!loaded.surroundings.closed) {
-    for (const std::string& side : closed.open_sides) findings.push_back("open: " + side);
-  }
-  for (const std::string& side : closed.overused_sides) {
-    findings.push_back("joined more than once: " + side);
-  }
-  for (const std::string& side : closed.misoriented_sides) findings.push_back(side);
-  if (loaded.surroundings.closed && loaded.volume < 0.0) findings.emplace_back("oriented inwards");
-  return findings;
+  CheckedModel model = checked(loaded.patches);
+  model.closed = around.closed;
+  model.why_open = around.why_open;
+  model.volume = loaded.volume;
+  model.volume_bound = loaded.volume_bound;
+  return model;
 }
 
 struct Measures {
-  double gap = 0.0, angle = 0.0, tolerance = 0.0;
-  int joins = 0;
+  double gap = 0.0, angle_deg = 0.0, tolerance = 0.0;
 };
 
-Measures measures_of(const LoadedModel& loaded) {
+Measures measures_of(const CheckedModel& model) {
   Measures m;
-  for (const Join& join : loaded.patches.joins) {
-    ++m.joins;
-    m.gap = std::max(m.gap, join.max_gap);
-    if (join.smoothness >= Smoothness::kAlmost) m.angle = std::max(m.angle, join.max_angle_rad);
-  }
-#ifdef ISOCHOR_WITH_OCCT
-  if (loaded.solid) {
-    m = {};
-    m.joins = static_cast<int>(loaded.solid->edges.size());
-    m.gap = loaded.solid->facts.max_edge_gap;
-    m.tolerance = loaded.solid->facts.max_tolerance;
-    for (const EdgeFacts& edge : loaded.solid->edges) {
-      if (edge.smoothness >= Smoothness::kAlmost) m.angle = std::max(m.angle, edge.max_angle_rad);
+  for (const CheckedEdge& edge : model.edges) {
+    m.gap = std::max(m.gap, edge.gap);
+    m.tolerance = std::max(m.tolerance, edge.tolerance);
+    if (edge.measured && edge.smoothness >= Smoothness::kAlmost) {
+      m.angle_deg = std::max(m.angle_deg, edge.angle_deg);
     }
   }
-#endif
   return m;
+}
+
+Value to_value(const std::vector<Finding>& findings) {
+  Value list = Value::list();
+  for (const Finding& f : findings) {
+    list.push(Value::object()
+                  .set("kind", f.kind)
+                  .set("severity", name_of(f.severity))
+                  .set("place", f.place)
+                  .set("at", f.at ? Value(*f.at) : Value())
+                  .set("value", f.value ? Value(*f.value) : Value())
+                  .set("limit", f.limit ? Value(*f.limit) : Value())
+                  .set("text", f.text));
+  }
+  return list;
+}
+
+Value to_value(const std::vector<AngleBin>& bins) {
+  Value list = Value::list();
+  for (const AngleBin& bin : bins) {
+    list.push(Value::object()
+                  .set("from_deg", bin.from)
+                  .set("to_deg", bin.to)
+                  .set("edges", static_cast<long>(bin.edges)));
+  }
+  return list;
+}
+
+// The first few of every kind; --json has all.
+void print_findings(const std::vector<Finding>& findings, const Common& common) {
+  constexpr int kShown = 6;
+  std::map<std::string, int> shown, all;
+  for (const Finding& f : findings) ++all[f.kind];
+  for (const Finding& f : findings) {
+    const int count = ++shown[f.kind];
+    if (count <= kShown) print(common, format("  %-8s %s", name_of(f.severity), f.text.c_str()));
+    if (count == kShown + 1) {
+      print(common, format("  %-8s ... and %d more of this kind (%s)", name_of(f.severity),
+                           all[f.kind] - kShown, f.kind.c_str()));
+    }
+  }
+}
+
+void print_histogram(const std::vector<AngleBin>& bins, const Common& common) {
+  std::string line;
+  for (const AngleBin& bin : bins) {
+    if (bin.edges == 0) continue;
+    line += (line.empty() ? "" : ", ") +
+            format("%d from %.2g to %.3g", bin.edges, bin.from, std::min(bin.to, 180.0));
+  }
+  if (!line.empty()) print(common, "edges by angle between their faces, degrees: " + line);
 }
 
 // What changed of the patches, by handle.
@@ -111,30 +144,45 @@ Value compare(const LoadedModel& now, const LoadedModel& then, const Common& com
 }  // namespace
 
 int run_check(const CheckOptions& options, const Common& common) {
+  if (!options.picture.empty()) require_picture(options.picture);
   ShapeMeasures measures;
   measures.close = parse_close(options.close);
   const LoadedModel loaded = load_model(options.model, common, {}, measures);
   std::optional<LoadedModel> original;
   if (!options.against.empty()) original = load_model(options.against, common, {}, measures);
-  const std::vector<std::string> findings = findings_of(loaded);
-  const Measures m = measures_of(loaded);
+  const CheckedModel subject = subject_of(loaded);
+  const std::vector<Finding> findings = findings_of(subject);
+  const bool valid = std::none_of(findings.begin(), findings.end(),
+                                  [](const Finding& f) { return f.severity == Severity::kFault; });
+  const Measures m = measures_of(subject);
+  const std::vector<AngleBin> bins = angle_histogram(subject);
   const std::string unit = loaded.patches.unit;
-  print(common, findings.empty() ? "valid" : "not valid");
-  for (const std::string& finding : findings) print(common, "  " + finding);
-  print(common, format("edges or joins: %d, largest gap %.3g %s, largest angle across a smooth one "
-                       "%.3g rad, largest tolerance %.3g %s",
-                       m.joins, m.gap, unit.c_str(), m.angle, m.tolerance, unit.c_str()));
+  if (!options.picture.empty()) {
+    write_png(options.picture, draw_check(loaded, subject, findings, common));
+  }
+  print(common, valid ? "valid" : "not valid");
+  print_findings(findings, common);
+  if (!loaded.opening.empty()) print(common, loaded.opening);
+  if (!closing_text(loaded).empty()) print(common, closing_text(loaded));
+  print(common,
+        format("%zu edges: largest gap %.3g %s, largest angle across a smooth one %.3g "
+               "degrees, largest tolerance %.3g %s",
+               subject.edges.size(), m.gap, unit.c_str(), m.angle_deg, m.tolerance, unit.c_str()));
+  print_histogram(bins, common);
   if (loaded.surroundings.closed) {
     print(common, format("volume: %.15g %s^3, error at most %.2g", loaded.volume, unit.c_str(),
                          loaded.volume_bound));
     if (!gaps_text(loaded).empty()) print(common, gaps_text(loaded));
   }
   Value result = Value::object()
-                     .set("valid", findings.empty())
-                     .set("findings", findings)
+                     .set("valid", valid)
+                     .set("findings", to_value(findings))
+                     .set("edges_by_angle", to_value(bins))
+                     .set("opening", loaded.opening)
+                     .set("closed_by", closing_names(loaded))
                      .set("closed", loaded.surroundings.closed)
                      .set("max_gap", m.gap)
-                     .set("max_smooth_angle_rad", m.angle)
+                     .set("max_smooth_angle_rad", m.angle_deg * kRadians)
                      .set("max_tolerance", m.tolerance)
                      .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())
                      .set("bound", loaded.volume_bound)
@@ -155,7 +203,8 @@ int run_check(const CheckOptions& options, const Common& common) {
     result.set("volume_change", change);
   }
   print_json(common, result);
-  return findings.empty() ? kExitDone : kExitNo;
+  if (!options.picture.empty()) print(common, "picture: " + options.picture);
+  return valid ? kExitDone : kExitNo;
 }
 
 }  // namespace isochor::app

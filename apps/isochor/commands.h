@@ -62,7 +62,7 @@ struct EditOptions {
 int run_edit(const EditOptions& options, const Common& common);
 
 struct CheckOptions {
-  std::string model, against;
+  std::string model, against, picture;
   std::vector<std::string> close;
 };
 int run_check(const CheckOptions& options, const Common& common);

@@ -105,6 +105,8 @@ int run(int argc, char** argv) {
   CheckOptions check;
   sub = app.add_subcommand("check", "validity, gaps, continuity, orientation, volume");
   sub->add_option("MODEL", check.model)->required();
+  sub->add_option("--picture", check.picture,
+                  "picture to write (PNG): edges by continuity, free edges red");
   sub->add_option("--against", check.against, "what changed since ORIGINAL, face by face");
   add_close(*sub, check.close);
   add_common(*sub, common);

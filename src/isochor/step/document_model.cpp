@@ -1,6 +1,5 @@
 #include "isochor/step/document_model.h"
 
-#include <BRepAdaptor_Curve.hxx>
 #include <BRep_Tool.hxx>
 #include <Interface_InterfaceModel.hxx>
 #include <Standard_Failure.hxx>
@@ -111,25 +110,15 @@ void note_faces_without_area(SolidModel& model, double diagonal) {
 }
 
 // Edges of one face only, with points along them.
-std::vector<OpenEdge> open_edges(const BrepTable& table) {
-  constexpr int kSteps = 32;
+std::vector<OpenEdge> open_edges(const BrepTable& table, const std::vector<EdgeFacts>& facts) {
   std::vector<OpenEdge> edges;
-  for (const EdgeRecord& record : table.edges) {
-    if (record.sites.size() != 1 || BRep_Tool::Degenerated(record.edge)) continue;
-    const BRepAdaptor_Curve curve(record.edge);
-    OpenEdge edge;
-    for (int k = 0; k <= kSteps; ++k) {
-      const double share = static_cast<double>(k) / kSteps;
-      const gp_Pnt p =
-          curve.Value((1.0 - share) * curve.FirstParameter() + share * curve.LastParameter());
-      edge.points.emplace_back(p.X(), p.Y(), p.Z());
-    }
+  for (const EdgeFacts& edge : facts) {
+    if (edge.faces.size() != 1 || edge.points.empty()) continue;
     std::ostringstream label;
     label.precision(4);
-    label << "the edge of " << table.label(record.sites.front().face) << " at ("
-          << edge.points[kSteps / 2].transpose() << ")";
-    edge.label = label.str();
-    edges.push_back(std::move(edge));
+    label << "the edge of " << table.label(edge.faces.front()) << " at ("
+          << edge.points[edge.points.size() / 2].transpose() << ")";
+    edges.push_back({label.str(), edge.points});
   }
   return edges;
 }
@@ -188,7 +177,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
     integrate(table, document, options.close, model);
   }
   note_faces_without_area(model, table.diagonal);
-  model.open_edges = open_edges(table);
+  model.open_edges = open_edges(table, model.edges);
   if (options.moments && model.facts.closed) model.moments = shape_moments(document.shape);
   if (const auto origin = common_point(options.close); options.moments && origin) {
     model.moments = shape_moments(document.shape, *origin);

@@ -116,6 +116,12 @@ EdgeFacts measure_edge(const BrepTable& table, const EdgeRecord& record) {
   const BRepAdaptor_Curve curve(record.edge);
   if (!curve.Is3DCurve()) return facts;
   facts.length = GCPnts_AbscissaPoint::Length(curve);
+  constexpr int kSteps = 32;
+  for (int k = 0; k <= kSteps; ++k) {
+    const double s = static_cast<double>(k) / kSteps;
+    const gp_Pnt p = curve.Value((1.0 - s) * curve.FirstParameter() + s * curve.LastParameter());
+    facts.points.emplace_back(p.X(), p.Y(), p.Z());
+  }
   facts.max_gap = largest_gap(table, record, curve);
   if (record.sites.size() == 2) measure_smoothness(table, record, curve, facts);
   return facts;

@@ -64,7 +64,8 @@ void transfer(Io& io, FaceFacts& f) {
 }
 template <typename Io>
 void transfer(Io& io, EdgeFacts& f) {
-  io(f.faces, f.degenerated, f.length, f.tolerance, f.max_gap, f.max_angle_rad, f.smoothness);
+  io(f.faces, f.degenerated, f.length, f.tolerance, f.max_gap, f.max_angle_rad, f.smoothness,
+     f.points);
 }
 template <typename Io>
 void transfer(Io& io, ShapeFacts& f) {

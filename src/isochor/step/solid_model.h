@@ -48,6 +48,7 @@ struct EdgeFacts {
   double max_gap = 0.0;        // between the 3D curve and its curves on the surfaces
   double max_angle_rad = 0.0;  // between the outward normals along the edge
   Smoothness smoothness = Smoothness::kSharp;
+  std::vector<Vec3> points;  // along it, both ends included; empty without a curve in space
 };
 
 // Validity and measures of a whole shape, taken before and after an edit with the same ruler.
