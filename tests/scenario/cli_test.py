@@ -381,6 +381,31 @@ class Check(Scenario):
         self.assertEqual((check["valid"], check["closed"], check["volume"]), (False, False, None))
         self.assertEqual(len(check["findings"]), 4)
 
+    def test_findings_have_places_limits_and_a_picture(self):
+        done = isochor("check", self.open_cube(), "--picture", "check.png")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        self.assertIn("belongs to one face only", done.stdout)
+        self.assertTrue((WORK / "check.png").read_bytes().startswith(b"\x89PNG"))
+        check = self.run_json("check", self.open_cube(), code=1)
+        for finding in check["findings"]:
+            self.assertEqual((finding["kind"], finding["severity"]), ("free edge", "fault"))
+            self.assertEqual(len(finding["at"]), 3)
+        self.assertIn("--close", check["opening"])
+        self.assertEqual(sum(row["edges"] for row in check["edges_by_angle"]), 8)
+        self.expect(3, "check", CUBE, "--picture", "check.jpg", says="png")
+
+    def test_planes_close_the_cube(self):
+        option = self.run_json("check", self.open_cube(), code=1)["opening"].split(": ")[-1].split()[1]
+        check = self.run_json("check", self.open_cube(), "--close", option)
+        self.assertEqual((check["valid"], check["closed_by"]), (True, [option.replace("=", " = ")]))
+        volume = self.run_json("volume", self.open_cube(), "--close", option, "--moments")
+        self.assertAlmostEqual(volume["volume"], 1, delta=1e-14)
+        for axis in range(3):
+            self.assertAlmostEqual(volume["moments"]["centroid"][axis], 0.5, delta=1e-14)
+        self.expect(3, "volume", self.open_cube(), "--close", "z=0.25", says="leaves the plane z = 0.25 by")
+        self.expect(3, "volume", self.open_cube(), "--close", "z", says="y=0")
+        self.expect(3, "volume", CUBE, "--close", "z=0", says="needs no closing planes")
+
     def test_against_tells_the_faces_apart_and_keeps_the_exit_code(self):
         against = self.run_json("check", self.pulled(), "--against", CUBE)["against"]
         self.assertEqual([face["handle"] for face in against], [f"face:{k}" for k in range(1, 7)])

@@ -20,6 +20,7 @@
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -49,6 +50,14 @@ int free_edges(const TopoDS_Shape& shape) {
     count += BRep_Tool::IsClosed(edge, face) ? 0 : 1;
   }
   return count;
+}
+
+double largest_tolerance(const TopoDS_Shape& shape) {
+  double largest = 0.0;
+  for (TopExp_Explorer it(shape, TopAbs_EDGE); it.More(); it.Next()) {
+    largest = std::max(largest, BRep_Tool::Tolerance(TopoDS::Edge(it.Current())));
+  }
+  return largest;
 }
 
 // A strip no wider than the tolerance.
@@ -97,6 +106,9 @@ class Sewer {
     make_solids(sewn);
     const int after = free_edges(shape_);
     if (after >= before) return false;
+    // Edges that only a large tolerance holds together are not one edge.
+    const double allowed = std::max(largest_tolerance(document_.shape), 2.0 * tolerance_);
+    if (largest_tolerance(shape_) > allowed) return false;
     number_faces(sewing);
     describe(before, after);
     return true;
