@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 
@@ -168,6 +169,22 @@ TEST(Import, ABrokenRuleKeepsEditsAway) {
   const WriteReport report = write_edited(path, {}, edits, folder.file("out.step"));
   EXPECT_FALSE(report.written);
   EXPECT_THAT(report.refusal, HasSubstr("breaks the rules of STEP"));
+  EXPECT_EQ(folder.file_count(), 1) << "only the input";
+}
+
+// A vertex at 1e30 leaves the volume to its error bound; a comparison within it proves nothing.
+TEST(Import, AnUndeterminedVolumeKeepsEditsAway) {
+  const TempFolder folder;
+  const auto path =
+      folder.write("huge.step", replaced(cube(), "#5=CARTESIAN_POINT('',(0.,0.25,1.));",
+                                         "#5=CARTESIAN_POINT('',(0.,0.25,1.E30));"));
+  const SolidModel model = read_solid(path);
+  ASSERT_TRUE(model.facts.closed);
+  ASSERT_FALSE(model.facts.volume_bound < std::abs(model.facts.volume));
+  const std::vector<EditedFace> edits = {{1, model.patches.surface(model.faces[1].patch)}};
+  const WriteReport report = write_edited(path, {}, edits, folder.file("out.step"));
+  EXPECT_FALSE(report.written);
+  EXPECT_THAT(report.refusal, HasSubstr("is not determined"));
   EXPECT_EQ(folder.file_count(), 1) << "only the input";
 }
 

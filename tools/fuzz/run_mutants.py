@@ -154,6 +154,10 @@ class Mutant:
         if again.code not in (0, 1) or found is None:
             return self.fail(f"what was written cannot be read: {again.err.strip()[-300:]}")
         meant, reread = report["check"]["rebuilt"], report["check"]["reread"]
+        if reread["closed"] and not all(
+                what["volume_bound"] is not None and what["volume_bound"] < abs(what["volume"])
+                for what in (meant, reread)):
+            return self.fail("edited, but the volume is not determined")
         # What was written is measured again to the digit; what was meant, up to the gaps it has.
         gap = max(reread["max_tolerance"], reread["max_edge_gap"])
         if found["faces"] != len(told["faces"]):
@@ -163,7 +167,7 @@ class Mutant:
         for what, slack in ((reread, 0.0), (meant, gap)):
             if found["volume"] is not None and not same(found["volume"], what["volume"],
                                                         slack * what["area"] +
-                                                        (slack > 0) * what["volume_bound"]):
+                                                        (slack > 0) * (what["volume_bound"] or 0.0)):
                 self.fail(f"volume {found['volume']!r}, the report says {what['volume']!r}")
             if not same(found["area"], what["area"], slack * found["faces"] * what["area"] ** 0.5):
                 self.fail(f"area {found['area']!r}, the report says {what['area']!r}")
@@ -207,7 +211,11 @@ def main():
         path = files[k % len(files)]
         # The kinds take turns within each file.
         seed = options.seed * 1_000_000 + k // len(files)
-        found = Mutant(isochor, path, faces[path], seed, options.limit).examine()
+        found = Mutant(isochor, path, faces[path], seed, options.limit)
+        try:
+            found.examine()
+        except Exception as error:  # a judge that stumbles has not judged
+            found.fail(f"could not be judged: {type(error).__name__}: {error}")
         for failure in found.failures:
             print(f"FAILED: mutate_step.py {path.name} --seed {seed} ({found.kind}): {failure}",
                   flush=True)

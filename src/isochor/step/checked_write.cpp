@@ -1,5 +1,8 @@
 #include "isochor/step/checked_write.h"
 
+#include <cmath>
+#include <cstdio>
+
 #include <fstream>
 
 #include "isochor/base/error.h"
@@ -62,6 +65,18 @@ std::string objection_to_import(const WriteJob& job, const ImportAccount& accoun
   return nothing_lost && !rules_matter ? "" : account.objection();
 }
 
+// What is read back is compared within the error bound: one as large as the volume proves nothing.
+// Negated, so that a bound that is no number objects too.
+std::string objection_to_bound(const ShapeFacts& facts) {
+  if (!facts.closed || facts.volume_bound < std::abs(facts.volume)) return "";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "the volume of the input is not determined (%.3g, error at most %.2g), so what is "
+                "written could not be checked",
+                facts.volume, facts.volume_bound);
+  return text;
+}
+
 // The rebuilt shape, checked before anything is written. A refusal is final: no way helps.
 std::vector<RebuildPlan> rebuild_and_check(const WriteJob& job, Document& document,
                                            WriteReport& report) {
@@ -72,6 +87,8 @@ std::vector<RebuildPlan> rebuild_and_check(const WriteJob& job, Document& docume
     return plans;
   }
   if (job.edits.empty()) return plans;
+  report.refusal = objection_to_bound(report.before);
+  if (!report.refusal.empty()) return plans;
   const TopoDS_Shape old = document.shape;
   tell_progress(0.5, "changing faces");
   report.refusal = rebuild(document, job.edits, job.convert, &plans);

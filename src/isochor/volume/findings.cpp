@@ -143,7 +143,7 @@ class Collector {
            "oriented inwards: the volume is negative",
            -1});
     }
-    if (model_.closed && model_.volume_bound >= std::abs(model_.volume)) {
+    if (model_.closed && !(model_.volume_bound < std::abs(model_.volume))) {
       add({"volume",
            Severity::kFault,
            "",
