@@ -76,7 +76,11 @@ class Collector {
   void add_at_edge(int e, const char* kind, Severity severity, std::optional<double> value,
                    std::optional<double> limit, const std::string& text) {
     const CheckedEdge& edge = model_.edges[static_cast<size_t>(e)];
-    add({kind, severity, edge.label, middle_of(edge), value, limit, edge.label + " " + text, e});
+    const std::optional<Vec3> at = middle_of(edge);
+    std::ostringstream where;
+    where.precision(4);
+    if (at) where << " at (" << at->transpose() << ")";
+    add({kind, severity, edge.label, at, value, limit, edge.label + where.str() + " " + text, e});
   }
 
   void judge_edge(int e) {
