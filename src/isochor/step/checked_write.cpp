@@ -117,7 +117,6 @@ MeasureChange measure_change(const TopoDS_Shape& before, const TopoDS_Shape& aft
 std::string write_lines(const WriteJob& job, const Document& document, const TopoDS_Shape& before,
                         const std::vector<RebuildPlan>& plans, const std::string& path,
                         WriteReport& report) {
-  if (document.sewn) return "faces were sewn on reading, so its edges are not the file's";
   SurgicalText text;
   try {
     const Part21File file = load_part21(job.step_text);

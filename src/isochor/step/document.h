@@ -38,7 +38,6 @@ struct Document {
   std::unordered_map<const void*, std::string> names;
   std::vector<std::string> notices;
   ImportAccount account;
-  bool sewn = false;  // faces were joined on reading (sewing.h): the file's entities are not these
 
   int face_count() const { return faces.Extent(); }
   // `k` counts from 0, as in FaceFacts.
