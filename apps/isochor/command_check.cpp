@@ -18,8 +18,6 @@
 namespace isochor::app {
 namespace {
 
-constexpr double kRadians = 3.14159265358979323846 / 180.0;
-
 CheckedModel subject_of(const LoadedModel& loaded) {
   const Surroundings& around = loaded.surroundings;
 #ifdef ISOCHOR_WITH_OCCT
@@ -182,7 +180,7 @@ int run_check(const CheckOptions& options, const Common& common) {
                      .set("closed_by", closing_names(loaded))
                      .set("closed", loaded.surroundings.closed)
                      .set("max_gap", m.gap)
-                     .set("max_smooth_angle_rad", m.angle_deg * kRadians)
+                     .set("max_smooth_angle_rad", m.angle_deg / kDegreesPerRadian)
                      .set("max_tolerance", m.tolerance)
                      .set("volume", loaded.surroundings.closed ? Value(loaded.volume) : Value())
                      .set("bound", loaded.volume_bound)

@@ -154,6 +154,16 @@ TEST(Import, ALostFaceIsNamedAndNeverWritten) {
   EXPECT_EQ(folder.file_count(), 1) << "only the input";
 }
 
+// Why the second face cannot be written again; nothing but the input may be left.
+std::string refusal_of_an_edit(const TempFolder& folder, const std::string& path,
+                               const SolidModel& model) {
+  const std::vector<EditedFace> edits = {{1, model.patches.surface(model.faces[1].patch)}};
+  const WriteReport report = write_edited(path, {}, edits, folder.file("out.step"));
+  EXPECT_FALSE(report.written);
+  EXPECT_EQ(folder.file_count(), 1) << "only the input";
+  return report.refusal;
+}
+
 // OpenCASCADE reads a coordinate that is no number as zero.
 TEST(Import, ABrokenRuleKeepsEditsAway) {
   const TempFolder folder;
@@ -163,13 +173,7 @@ TEST(Import, ABrokenRuleKeepsEditsAway) {
   const SolidModel model = read_solid(path);
   ASSERT_FALSE(model.import.complete());
   EXPECT_THAT(model.import.objection(), HasSubstr("breaks the rules of STEP"));
-  const int face = 1;
-  const std::vector<EditedFace> edits = {
-      {face, model.patches.surface(model.faces[static_cast<size_t>(face)].patch)}};
-  const WriteReport report = write_edited(path, {}, edits, folder.file("out.step"));
-  EXPECT_FALSE(report.written);
-  EXPECT_THAT(report.refusal, HasSubstr("breaks the rules of STEP"));
-  EXPECT_EQ(folder.file_count(), 1) << "only the input";
+  EXPECT_THAT(refusal_of_an_edit(folder, path, model), HasSubstr("breaks the rules of STEP"));
 }
 
 // A vertex at 1e30 leaves the volume to its error bound; a comparison within it proves nothing.
@@ -181,11 +185,7 @@ TEST(Import, AnUndeterminedVolumeKeepsEditsAway) {
   const SolidModel model = read_solid(path);
   ASSERT_TRUE(model.facts.closed);
   ASSERT_FALSE(model.facts.volume_bound < std::abs(model.facts.volume));
-  const std::vector<EditedFace> edits = {{1, model.patches.surface(model.faces[1].patch)}};
-  const WriteReport report = write_edited(path, {}, edits, folder.file("out.step"));
-  EXPECT_FALSE(report.written);
-  EXPECT_THAT(report.refusal, HasSubstr("is not determined"));
-  EXPECT_EQ(folder.file_count(), 1) << "only the input";
+  EXPECT_THAT(refusal_of_an_edit(folder, path, model), HasSubstr("is not determined"));
 }
 
 TEST(Import, FacesOfTextThatCannotBeReadAreCounted) {

@@ -14,13 +14,13 @@ Closed models are counted in two classes: those with an untrimmed B-spline face 
 all be edited, and of the others at least half. Exit status 0 when that holds and nothing failed.
 Where ISOCHOR_EXTRA_DATA_LOG names a file, a line per model is appended to it.
 """
-import argparse
 import json
-import os
 import pathlib
 import subprocess
 import sys
 import time
+
+from real_folder import SKIPPED, files_of, note_run, options_of
 
 SUFFIXES = {".step", ".stp", ".igs", ".iges", ".brep", ".brp"}
 UNTRIMMED = ("natural", "iso-box")
@@ -157,28 +157,17 @@ def counted(closed, first_class):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("isochor")
-    parser.add_argument("folder", nargs="?", default=os.environ.get("ISOCHOR_EXTRA_DATA"))
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("real_files_out"))
-    parser.add_argument("--seconds", type=float, default=240.0)
-    options = parser.parse_args()
+    options = options_of(__doc__.splitlines()[0], "isochor", 240.0, "real_files_out")
     if not options.folder:
-        print("skipped: no folder of real files (set ISOCHOR_EXTRA_DATA)")
-        return 77
-    options.out.mkdir(parents=True, exist_ok=True)
-    files = sorted(p for p in pathlib.Path(options.folder).rglob("*")
-                   if p.suffix.lower() in SUFFIXES)
-    log = os.environ.get("ISOCHOR_EXTRA_DATA_LOG")
+        return SKIPPED
+    files = files_of(options.folder, SUFFIXES)
     print("| file | faces | editable faces | closed | pull | relative change | check | seconds |")
     print("|---|---|---|---|---|---|---|---|")
     examined = []
     for path in files:
         examined.append(examine(options.isochor, path, options.out, options.seconds))
         print(examined[-1].row(), flush=True)
-        if log:
-            with open(log, "a", encoding="utf-8") as lines:
-                lines.write(f"{path.name}\n")
+        note_run(path)
     closed = [found for found in examined if found.closed == "yes"]
     edited, all_of_them = counted(closed, True)
     others_edited, others = counted(closed, False)

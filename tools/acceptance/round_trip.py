@@ -11,14 +11,13 @@ states by name, and a product without a name that gets its id, are the same. And
 `--rewrite` the copy must be the same bytes. FOLDER defaults to $ISOCHOR_EXTRA_DATA; without either it is
 skipped (exit code 77).
 """
-import argparse
 import collections
 import json
-import os
-import pathlib
 import re
 import subprocess
 import sys
+
+from real_folder import SKIPPED, files_of, options_of
 
 _STATEMENT = re.compile(r"#(\d+)\s*=\s*((?:[^';]|'[^']*')*);")
 _COMMENT = re.compile(r"/\*.*?\*/", re.S)
@@ -172,18 +171,10 @@ def examine(isochor, path, out, seconds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("isochor")
-    parser.add_argument("folder", nargs="?", default=os.environ.get("ISOCHOR_EXTRA_DATA"))
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("round_trip_out"))
-    parser.add_argument("--seconds", type=float, default=600.0)
-    options = parser.parse_args()
+    options = options_of(__doc__.splitlines()[0], "isochor", 600.0, "round_trip_out")
     if not options.folder:
-        print("skipped: no folder of real files (set ISOCHOR_EXTRA_DATA)")
-        return 77
-    options.out.mkdir(parents=True, exist_ok=True)
-    files = sorted(p for p in pathlib.Path(options.folder).rglob("*")
-                   if p.suffix.lower() in (".step", ".stp"))
+        return SKIPPED
+    files = files_of(options.folder, (".step", ".stp"))
     print("| file | B-spline surfaces identical | differs | cause |\n|---|---|---|---|")
     failed = 0
     for path in files:

@@ -18,14 +18,13 @@ between its last two tolerances. Where ours is farther away than that and our bo
 compared one by one, and those that differ are integrated a third time by brute force. A disagreement is
 settled when that settles every such face; exit status 1 when one is ours or unexplained.
 """
-import argparse
 import collections
-import os
-import pathlib
 import resource
 import signal
 import subprocess
 import sys
+
+from real_folder import SKIPPED, files_of, options_of
 
 SUFFIXES = {".step", ".stp", ".igs", ".iges", ".brep", ".brp"}
 TOLERANCES = ("1e-10", "1e-12", "1e-14")
@@ -169,22 +168,16 @@ def check_file(probe, path, name):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("probe", type=pathlib.Path)
-    parser.add_argument("folder", nargs="?", default=os.environ.get("ISOCHOR_EXTRA_DATA"))
-    parser.add_argument("--seconds", type=int, default=120)
-    options = parser.parse_args()
-    if not options.folder or not pathlib.Path(options.folder).is_dir():
-        print("skipped: no folder of CAD files (ISOCHOR_EXTRA_DATA)")
-        return 77
+    options = options_of(__doc__.splitlines()[0], "probe", 120)
+    if not options.folder:
+        return SKIPPED
     probe = Probe(options.probe, options.seconds)
     titles = " ".join(f"Eps {tolerance}".rjust(9) for tolerance in TOLERANCES)
     print(f"{'file':40} {'':2} {'volume':>15} {'bound':>9} {'gaps':>9} {'axes':>9} {titles}  verdict")
     solids = failed = 0
-    for path in sorted(pathlib.Path(options.folder).rglob("*")):
-        if path.suffix.lower() in SUFFIXES:
-            count, wrong = check_file(probe, path, str(path.relative_to(options.folder)))
-            solids, failed = solids + count, failed + wrong
+    for path in files_of(options.folder, SUFFIXES):
+        count, wrong = check_file(probe, path, str(path.relative_to(options.folder)))
+        solids, failed = solids + count, failed + wrong
     print(f"{solids} closed solids, {failed} disagreements that are ours or unexplained")
     return 1 if failed or not solids else 0
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdio>
-
 #include <fstream>
 
 #include "isochor/base/error.h"

@@ -119,10 +119,6 @@ bool overwrite(const Spline& spline, const Surface& surface) {
   return true;
 }
 
-}  // namespace
-
-namespace {
-
 std::optional<Surface> surface_of_entity(const Handle(Standard_Transient) & entity) {
   const auto step_face = Handle(StepShape_FaceSurface)::DownCast(entity);
   auto surface = Handle(StepGeom_Surface)::DownCast(entity);

@@ -3,8 +3,6 @@
 namespace isochor {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
-
 std::string label_of(const FaceFacts& face) {
   return face.handle + (face.name.empty() ? "" : " (\"" + face.name + "\")");
 }
@@ -46,7 +44,7 @@ CheckedModel checked(const SolidModel& solid, bool closed, const std::string& wh
     edge.length = facts.length;
     edge.gap = facts.max_gap;
     edge.tolerance = facts.tolerance;
-    edge.angle_deg = facts.max_angle_rad * kDegrees;
+    edge.angle_deg = facts.max_angle_rad * kDegreesPerRadian;
     edge.smoothness = facts.smoothness;
     for (int face : facts.faces) model.faces[static_cast<size_t>(face)].perimeter += facts.length;
     model.edges.push_back(std::move(edge));

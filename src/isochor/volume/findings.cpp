@@ -12,7 +12,6 @@
 namespace isochor {
 namespace {
 
-constexpr double kDegrees = 180.0 / 3.14159265358979323846;
 // A face narrower, or an edge shorter, than this many tolerances is lost to other programs.
 constexpr double kTinyTolerances = 4.0;
 // Tolerances above this part of the diagonal hide real gaps.
@@ -104,7 +103,8 @@ class Collector {
           "is " + print(edge.length) + unit + " long, its tolerance is " + print(edge.tolerance));
     }
     if (edge.measured && edge.smoothness == Smoothness::kAlmost) {
-      add_at_edge(e, "almost smooth", Severity::kNote, edge.angle_deg, kSmoothAngle * kDegrees,
+      add_at_edge(e, "almost smooth", Severity::kNote, edge.angle_deg,
+                  kSmoothAngle * kDegreesPerRadian,
                   "is smooth but for " + print(edge.angle_deg) + " degrees");
     }
     if (edge.measured && edge.angle_deg > kFolded) {
@@ -219,7 +219,7 @@ CheckedModel checked(const PatchModel& model) {
     edge.uses = 1 + std::max(uses[{join.a.patch, join.a.side}], uses[{join.b.patch, join.b.side}]);
     edge.measured = true;
     edge.gap = join.max_gap;
-    edge.angle_deg = join.max_angle_rad * kDegrees;
+    edge.angle_deg = join.max_angle_rad * kDegreesPerRadian;
     edge.smoothness = join.smoothness;
     result.edges.push_back(std::move(edge));
   }
@@ -238,11 +238,11 @@ CheckedModel checked(const PatchModel& model) {
 std::vector<Finding> findings_of(const CheckedModel& model) { return Collector(model).take(); }
 
 std::vector<AngleBin> angle_histogram(const CheckedModel& model) {
-  std::vector<AngleBin> bins = {{0.0, kSmoothAngle * kDegrees},
-                                {kSmoothAngle * kDegrees, 0.1},
+  std::vector<AngleBin> bins = {{0.0, kSmoothAngle * kDegreesPerRadian},
+                                {kSmoothAngle * kDegreesPerRadian, 0.1},
                                 {0.1, 1.0},
-                                {1.0, kAlmostSmoothAngle * kDegrees},
-                                {kAlmostSmoothAngle * kDegrees, 30.0},
+                                {1.0, kAlmostSmoothAngle * kDegreesPerRadian},
+                                {kAlmostSmoothAngle * kDegreesPerRadian, 30.0},
                                 {30.0, 90.0},
                                 {90.0, 180.0 + 1e-9}};
   for (const CheckedEdge& edge : model.edges) {

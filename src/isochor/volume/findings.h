@@ -16,9 +16,10 @@
 #include <vector>
 
 #include "isochor/bspline/patch_model.h"
-#include "isochor/volume/flux_field.h"
 
 namespace isochor {
+
+inline constexpr double kDegreesPerRadian = 180.0 / 3.14159265358979323846;
 
 struct CheckedEdge {
   std::string label;         // "the edge of face:3 and face:7"
