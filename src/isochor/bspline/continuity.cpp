@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "isochor/bspline/joins.h"
+#include "isochor/bspline/measured_lines.h"
 #include "isochor/bspline/smooth_relations.h"
 #include "isochor/bspline/smoothness.h"
 #include "isochor/bspline/trims.h"
@@ -190,12 +191,12 @@ void lock_join(const PatchModel& model, int k, bool covered, LockCollector* lock
   }
 }
 
-void lock_knot_lines(const PatchModel& model, int q, const Surface& surface, double size,
+void lock_knot_lines(const PatchModel& model, int q, const internal::MeasuredLines& lines,
                      const Covered& covered, LockCollector* locks) {
   const Patch& patch = model.patches[static_cast<size_t>(q)];
   for (Direction direction : {Direction::kU, Direction::kV}) {
     const KnotVector& knots = knots_of(patch, direction);
-    for (const KnotLine& line : interior_smoothness(surface, direction, size)) {
+    for (const KnotLine& line : internal::lines_of(lines, q, direction)) {
       if (line.measured <= line.guaranteed || covered.line(q, direction, line.knot)) continue;
       const int order = protected_order(line.measured, knots.degree());
       if (order <= knots.degree() - line.multiplicity) continue;
@@ -265,9 +266,10 @@ std::vector<int> functions_rough_at(const KnotVector& knots, double knot, int or
   return rough;
 }
 
-void derive_locks(PatchModel& model) { derive_locks(model, smooth_relations(model)); }
+namespace {
 
-void derive_locks(PatchModel& model, std::vector<SmoothRelation> relations) {
+void lock_all(PatchModel& model, std::vector<SmoothRelation> relations,
+              const internal::MeasuredLines& lines) {
   LockCollector locks(&model);
   model.relations = std::move(relations);
   const Covered covered(model.relations);
@@ -276,7 +278,7 @@ void derive_locks(PatchModel& model, std::vector<SmoothRelation> relations) {
   for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
     lock_trim(model, q, &locks);
     const Surface surface = model.surface(q);
-    lock_knot_lines(model, q, surface, size, covered, &locks);
+    lock_knot_lines(model, q, lines, covered, &locks);
     lock_poles(model, q, surface, size, classes, covered, &locks);
   }
   for (const LockedSide& side : model.locked_sides) lock_side(model, side, &locks);
@@ -291,6 +293,17 @@ void derive_locks(PatchModel& model, std::vector<SmoothRelation> relations) {
       lock_wrap(model, k, &locks);
     }
   }
+}
+
+}  // namespace
+
+void derive_locks(PatchModel& model) {
+  const internal::MeasuredLines lines = internal::measured_lines(model);
+  lock_all(model, internal::smooth_relations(model, lines), lines);
+}
+
+void derive_locks(PatchModel& model, std::vector<SmoothRelation> relations) {
+  lock_all(model, std::move(relations), internal::measured_lines(model));
 }
 
 }  // namespace isochor

@@ -19,7 +19,7 @@ const Patch& patch_of(const PatchModel& model, int q) {
 
 // The strip that ends (below) or begins at `knot`; `backwards`: n runs against the parameter.
 Strip make_strip(const PatchModel& model, int patch, Direction across, double knot, bool below,
-                 bool backwards) {
+                 bool backwards, KnownShares* known) {
   const KnotVector& knots = knots_of(patch_of(model, patch), across);
   int span = knots.spans().front();
   for (int k : knots.spans()) {
@@ -29,25 +29,16 @@ Strip make_strip(const PatchModel& model, int patch, Direction across, double kn
   strip.patch = patch;
   strip.across = across;
   strip.first = span - knots.degree();
-  for (int r = 0; r < 3; ++r) {
-    auto& shares = strip.derivatives[static_cast<size_t>(r)];
-    shares = exact_derivatives(knots, span, knot, r);
-    if (backwards && r == 1) {
-      for (Rational& share : shares) share = -share;
-    }
-    for (const Rational& share : shares) {
-      strip.rounded[static_cast<size_t>(r)].push_back(share.to_double());
-    }
-  }
+  strip.shares = known->at(knots, span, knot, backwards);
   return strip;
 }
 
-Strip side_strip(const PatchModel& model, const SideRef& ref, bool incoming) {
+Strip side_strip(const PatchModel& model, const SideRef& ref, bool incoming, KnownShares* known) {
   const Direction across = across_direction(ref.side);
   const KnotVector& knots = knots_of(patch_of(model, ref.patch), across);
   const bool begin = is_begin_side(ref.side);
   return make_strip(model, ref.patch, across, begin ? knots.begin() : knots.end(), !begin,
-                    begin == incoming);
+                    begin == incoming, known);
 }
 
 double weight_at(const Patch& patch, const std::pair<int, int>& at) {
@@ -62,18 +53,24 @@ double weight(const PatchModel& model, const Strip& strip, int i, int j) {
   return weight_at(patch, grid_index(patch, strip, strip.first + i, j));
 }
 
-int rows_of(const Strip& strip) { return static_cast<int>(strip.derivatives[0].size()); }
+int rows_of(const Strip& strip) { return static_cast<int>(strip.derivative(0).size()); }
 
 // The rows of a strip that have a share in derivatives up to `order`.
 bool matters(const Strip& strip, int i, int order) {
   for (int r = 0; r <= order; ++r) {
-    if (!strip.derivatives[static_cast<size_t>(r)][static_cast<size_t>(i)].is_zero()) return true;
+    if (!strip.derivative(r)[static_cast<size_t>(i)].is_zero()) return true;
   }
   return false;
 }
 
+bool weighted(const PatchModel& model, const Line& line) {
+  return !patch_of(model, line.strips[0].patch).weights.empty() ||
+         !patch_of(model, line.strips[1].patch).weights.empty();
+}
+
 // Whether w_ij = a_i b_j for the rows that matter, to rounding; b from the curve's own weights.
 bool weights_separate(const PatchModel& model, const Line& line, int order) {
+  if (!weighted(model, line)) return true;
   std::vector<double> along;
   for (const Strip& strip : line.strips) {
     for (int i = 0; i < rows_of(strip); ++i) {
@@ -108,15 +105,15 @@ Derivatives derivatives_at(const PatchModel& model, const Strip& strip, int j, d
     const auto at = grid_index(patch, strip, strip.first + i, j);
     poles.push_back(model.points[static_cast<size_t>(patch.point(at.first, at.second))]);
     weights.push_back(weight_at(patch, at) * scale);
-    const double share = strip.rounded[0][static_cast<size_t>(i)] * weights.back();
+    const double share = strip.rounded(0)[static_cast<size_t>(i)] * weights.back();
     sum += share * (poles.back() - poles.front());
     total += share;
   }
   const Vec3 point = poles.front() + sum / total;
   Derivatives result;
-  for (size_t r = 0; r < 2; ++r) {
+  for (int r = 0; r < 2; ++r) {
     for (size_t i = 0; i < poles.size(); ++i) {
-      const Vec3 term = strip.rounded[r + 1][i] * weights[i] * (poles[i] - point);
+      const Vec3 term = strip.rounded(r + 1)[i] * weights[i] * (poles[i] - point);
       result.value[r] += term;
       result.size[r] += term.norm();
     }
@@ -137,10 +134,9 @@ double fitted_factor(const std::vector<Vec3>& above, const std::vector<Vec3>& be
 
 // The simplest rational within `noise` of a measured value, a known one first.
 Rational simplest_near(double value, double noise, const KnownFactors& known) {
-  const Rational low = Rational(value) - Rational(noise);
-  const Rational high = Rational(value) + Rational(noise);
-  const Rational* factor = known.find(low, high);
-  return factor != nullptr ? *factor : simplest_between(low, high);
+  const Rational* factor = known.find(value, noise);
+  if (factor != nullptr) return *factor;
+  return simplest_between(Rational(value) - Rational(noise), Rational(value) + Rational(noise));
 }
 
 // A simple rational near a measured value that does not make the residual (relative, in units of
@@ -180,7 +176,7 @@ class Fit {
   static double boundary_weight(const PatchModel& model, const Strip& strip) {
     double total = 0.0;
     for (int i = 0; i < rows_of(strip); ++i) {
-      total += strip.rounded[0][static_cast<size_t>(i)] * weight(model, strip, i, 0);
+      total += strip.rounded(0)[static_cast<size_t>(i)] * weight(model, strip, i, 0);
     }
     return total;
   }
@@ -281,7 +277,7 @@ Balanced balanced_equation(const PatchModel& model, const Line& line, int r, int
     const Strip& strip = line.strips[s];
     for (int i = 0; i < rows_of(strip); ++i) {
       weights[s].emplace_back(weight(model, strip, i, j));
-      own[s] += strip.derivatives[0][static_cast<size_t>(i)] * weights[s].back();
+      own[s] += strip.derivative(0)[static_cast<size_t>(i)] * weights[s].back();
     }
   }
   const Rational scale = own[0] / own[1];
@@ -290,8 +286,7 @@ Balanced balanced_equation(const PatchModel& model, const Line& line, int r, int
   const auto add = [&](size_t s, int order, const Rational& factor) {
     const Strip& strip = line.strips[s];
     for (size_t i = 0; i < weights[s].size(); ++i) {
-      const Rational value =
-          factor * strip.derivatives[static_cast<size_t>(order)][i] * weights[s][i];
+      const Rational value = factor * strip.derivative(order)[i] * weights[s][i];
       terms.add(static_cast<int>(s), strip.first + static_cast<int>(i), value);
       sum += value;
       size += value.abs();
@@ -341,10 +336,10 @@ std::pair<int, int> grid_index(const Patch& patch, const Strip& strip, int row, 
   return {strip.flipped ? patch.u_size() - 1 - j : j, row};
 }
 
-Line join_line(const PatchModel& model, const Join& join) {
+Line join_line(const PatchModel& model, const Join& join, KnownShares* known) {
   Line line;
-  line.strips[0] = side_strip(model, join.a, true);
-  line.strips[1] = side_strip(model, join.b, false);
+  line.strips[0] = side_strip(model, join.a, true, known);
+  line.strips[1] = side_strip(model, join.b, false, known);
   line.strips[1].flipped = join.opposed;
   line.count = knots_of(patch_of(model, join.a.patch), running_direction(join.a.side)).size();
   const SideRef* sides[2] = {&join.a, &join.b};
@@ -356,21 +351,22 @@ Line join_line(const PatchModel& model, const Join& join) {
   return line;
 }
 
-Line wrap_line(const PatchModel& model, const Join& join) {
+Line wrap_line(const PatchModel& model, const Join& join, KnownShares* known) {
   const Direction across = across_direction(join.a.side);
   const KnotVector& knots = knots_of(patch_of(model, join.a.patch), across);
   Line line;
-  line.strips[0] = make_strip(model, join.a.patch, across, knots.end(), true, false);
-  line.strips[1] = make_strip(model, join.a.patch, across, knots.begin(), false, false);
+  line.strips[0] = make_strip(model, join.a.patch, across, knots.end(), true, false, known);
+  line.strips[1] = make_strip(model, join.a.patch, across, knots.begin(), false, false, known);
   line.count = knots_of(patch_of(model, join.a.patch), running_direction(join.a.side)).size();
   line.period = knots.size() - wrapped_poles(knots);
   return line;
 }
 
-Line knot_line(const PatchModel& model, int patch, Direction across, double knot, int period) {
+Line knot_line(const PatchModel& model, int patch, Direction across, double knot, int period,
+               KnownShares* known) {
   Line line;
-  line.strips[0] = make_strip(model, patch, across, knot, true, false);
-  line.strips[1] = make_strip(model, patch, across, knot, false, false);
+  line.strips[0] = make_strip(model, patch, across, knot, true, false, known);
+  line.strips[1] = make_strip(model, patch, across, knot, false, false, known);
   line.count =
       knots_of(patch_of(model, patch), across == Direction::kU ? Direction::kV : Direction::kU)
           .size();
@@ -378,21 +374,53 @@ Line knot_line(const PatchModel& model, int patch, Direction across, double knot
   return line;
 }
 
-const Rational* KnownFactors::find(const Rational& low, const Rational& high) const {
-  // Rounding keeps the order, so what lies outside rounded lies outside.
-  const double least = low.to_double();
-  const double most = high.to_double();
+std::shared_ptr<const RowShares> KnownShares::at(const KnotVector& knots, int span, double knot,
+                                                 bool backwards) {
+  // All that exact_derivatives reads.
+  std::vector<double> key(knots.knots().begin() + span - knots.degree() + 1,
+                          knots.knots().begin() + span + knots.degree() + 1);
+  key.push_back(knot);
+  key.push_back(backwards ? 1.0 : 0.0);
+  std::shared_ptr<const RowShares>& known = shares_[std::move(key)];
+  if (known) return known;
+  RowShares fresh;
+  for (int r = 0; r < 3; ++r) {
+    auto& shares = fresh.derivatives[static_cast<size_t>(r)];
+    shares = exact_derivatives(knots, span, knot, r);
+    if (backwards && r == 1) {
+      for (Rational& share : shares) share = -share;
+    }
+    for (const Rational& share : shares) {
+      fresh.rounded[static_cast<size_t>(r)].push_back(share.to_double());
+    }
+  }
+  known = std::make_shared<const RowShares>(std::move(fresh));
+  return known;
+}
+
+const Rational* KnownFactors::find(double value, double noise) const {
+  // The ends, each rounded once. Rounding keeps the order: what lies outside rounded lies outside,
+  // and what lies strictly inside rounded lies inside.
+  const double least = value - noise;
+  const double most = value + noise;
   for (size_t k = 0; k < factors_.size(); ++k) {
     if (rounded_[k] < least || rounded_[k] > most) continue;
-    if (low <= factors_[k] && factors_[k] <= high) return &factors_[k];
+    if (least < rounded_[k] && rounded_[k] < most) return &factors_[k];
+    if (Rational(value) - Rational(noise) <= factors_[k] &&
+        factors_[k] <= Rational(value) + Rational(noise)) {
+      return &factors_[k];
+    }
   }
   return nullptr;
 }
 
 void KnownFactors::add(const Rational& factor) {
-  if (find(factor, factor) != nullptr) return;
+  const double rounded = factor.to_double();
+  for (size_t k = 0; k < factors_.size(); ++k) {
+    if (rounded_[k] == rounded && factors_[k] == factor) return;
+  }
   factors_.push_back(factor);
-  rounded_.push_back(factor.to_double());
+  rounded_.push_back(rounded);
 }
 
 void KnownFactors::shrink_to(size_t size) {

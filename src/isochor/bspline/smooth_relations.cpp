@@ -8,6 +8,7 @@
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/line_strips.h"
+#include "isochor/bspline/measured_lines.h"
 #include "isochor/bspline/pole_rows.h"
 
 namespace isochor {
@@ -25,8 +26,8 @@ std::string smoothly(int order) { return order == 2 ? "smoothly (G2)" : "smoothl
 // Collects the relations that fit, with the factors they share.
 class RelationFinder {
  public:
-  explicit RelationFinder(const PatchModel& model)
-      : model_(model), size_(diagonal(model)), classes_(point_classes(model)) {}
+  RelationFinder(const PatchModel& model, const internal::MeasuredLines& lines)
+      : model_(model), lines_(lines), classes_(point_classes(model)) {}
 
   std::vector<SmoothRelation> run() {
     for (size_t k = 0; k < model_.joins.size(); ++k) {
@@ -37,9 +38,8 @@ class RelationFinder {
       }
     }
     for (int q = 0; q < static_cast<int>(model_.patches.size()); ++q) {
-      const Surface surface = model_.surface(q);
-      add_knot_lines(q, surface, Direction::kU);
-      add_knot_lines(q, surface, Direction::kV);
+      add_knot_lines(q, Direction::kU);
+      add_knot_lines(q, Direction::kV);
     }
     for (SmoothRelation& pole : internal::pole_relations(model_)) {
       relations_.push_back(std::move(pole));
@@ -100,7 +100,7 @@ class RelationFinder {
     if (join.common) {
       add_common(std::move(relation), join);
     } else {
-      add(std::move(relation), internal::join_line(model_, join));
+      add(std::move(relation), internal::join_line(model_, join, &shares_));
     }
   }
 
@@ -113,8 +113,8 @@ class RelationFinder {
     refined.a = pair->a;
     refined.b = pair->b;
     const size_t known = factors_.size();
-    if (!internal::fit_relation(pair->model, internal::join_line(pair->model, refined), &relation,
-                                &factors_)) {
+    if (!internal::fit_relation(pair->model, internal::join_line(pair->model, refined, &shares_),
+                                &relation, &factors_)) {
       return;
     }
     for (const auto& equations : relation.equations) {
@@ -139,14 +139,14 @@ class RelationFinder {
     relation.order = protected_order(join.smoothness, knots.degree());
     if (relation.order <= knots.degree() - knots.multiplicity(knots.begin())) return;
     relation.text = label_of(patch) + " closes on itself " + smoothly(relation.order);
-    add(std::move(relation), internal::wrap_line(model_, join));
+    add(std::move(relation), internal::wrap_line(model_, join, &shares_));
   }
 
-  void add_knot_lines(int q, const Surface& surface, Direction across) {
+  void add_knot_lines(int q, Direction across) {
     const Patch& patch = patch_of(model_, q);
     const KnotVector& knots = knots_of(patch, across);
     const int wrapped = wrapped_rows(patch, across, classes_);
-    for (const KnotLine& found : interior_smoothness(surface, across, size_)) {
+    for (const KnotLine& found : internal::lines_of(lines_, q, across)) {
       if (found.measured <= found.guaranteed || found.measured < Smoothness::kTangent) continue;
       SmoothRelation relation;
       relation.kind = SmoothRelation::Kind::kKnotLine;
@@ -157,22 +157,40 @@ class RelationFinder {
       if (relation.order <= knots.degree() - found.multiplicity) continue;
       relation.text = label_of(patch) + " is smooth (" + (relation.order == 2 ? "G2" : "G1") +
                       ") across an inner knot line of " + (across == Direction::kU ? "u" : "v");
-      add(std::move(relation), internal::knot_line(model_, q, across, found.knot,
-                                                   wrapped > 0 ? knots.size() - wrapped : 0));
+      add(std::move(relation),
+          internal::knot_line(model_, q, across, found.knot,
+                              wrapped > 0 ? knots.size() - wrapped : 0, &shares_));
     }
   }
 
   const PatchModel& model_;
-  double size_;
+  const internal::MeasuredLines& lines_;
   PointClasses classes_;
   internal::KnownFactors factors_;
+  internal::KnownShares shares_;
   std::vector<SmoothRelation> relations_;
 };
 
 }  // namespace
 
 std::vector<SmoothRelation> smooth_relations(const PatchModel& model) {
-  return RelationFinder(model).run();
+  return internal::smooth_relations(model, internal::measured_lines(model));
+}
+
+internal::MeasuredLines internal::measured_lines(const PatchModel& model) {
+  const double size = diagonal(model);
+  MeasuredLines lines;
+  for (int q = 0; q < static_cast<int>(model.patches.size()); ++q) {
+    const Surface surface = model.surface(q);
+    lines.push_back({interior_smoothness(surface, Direction::kU, size),
+                     interior_smoothness(surface, Direction::kV, size)});
+  }
+  return lines;
+}
+
+std::vector<SmoothRelation> internal::smooth_relations(const PatchModel& model,
+                                                       const MeasuredLines& lines) {
+  return RelationFinder(model, lines).run();
 }
 
 std::vector<int> points_locking(const PatchModel& model, const SmoothRelation& relation) {

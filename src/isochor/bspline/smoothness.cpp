@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "isochor/base/tolerance.h"
+#include "isochor/bspline/surface_derivatives.h"
 
 namespace isochor {
 namespace {
@@ -19,27 +20,39 @@ SurfaceDerivatives derivatives_at(const Surface& surface, Direction across, doub
                                  : surface.derivatives(along, knot, 2, along_limit, knot_limit);
 }
 
-void measure_line(const Surface& surface, Direction across, double size, KnotLine* line) {
-  const bool tangent_is_u = across == Direction::kV;
-  const KnotVector& along = knots_of(surface, tangent_is_u ? Direction::kU : Direction::kV);
-  const double u_length = length_of(surface.u_knots());
-  const double v_length = length_of(surface.v_knots());
+// The basis along lines where they are measured: at several points of each span.
+std::vector<BasisValues> bases_along(const KnotVector& along) {
+  std::vector<BasisValues> bases;
   for (int k : along.spans()) {
     for (double f : kFractions) {
       const double t = f == 1.0 ? along[k + 1] : along[k] + f * (along[k + 1] - along[k]);
-      const Limit limit = f == 1.0 ? Limit::kFromBelow : Limit::kFromAbove;
-      const auto frame = [&](Limit side) {
-        return curve_frame(derivatives_at(surface, across, line->knot, side, t, limit),
-                           tangent_is_u, 1.0, size, u_length, v_length);
-      };
-      const CurveFrame below = frame(Limit::kFromBelow);
-      const CurveFrame above = frame(Limit::kFromAbove);
-      if (!below.regular || !above.regular) continue;
-      line->max_angle_rad =
-          std::max(line->max_angle_rad, angle_between(below.normal, above.normal));
-      line->max_curvature_jump =
-          std::max(line->max_curvature_jump, std::abs(below.curvature - above.curvature));
+      bases.push_back(
+          internal::basis_at(along, t, 2, f == 1.0 ? Limit::kFromBelow : Limit::kFromAbove));
     }
+  }
+  return bases;
+}
+
+void measure_line(const Surface& surface, Direction across, const std::vector<BasisValues>& along,
+                  double size, KnotLine* line) {
+  const bool tangent_is_u = across == Direction::kV;
+  const KnotVector& knots = knots_of(surface, across);
+  const BasisValues sides[2] = {internal::basis_at(knots, line->knot, 2, Limit::kFromBelow),
+                                internal::basis_at(knots, line->knot, 2, Limit::kFromAbove)};
+  const double u_length = length_of(surface.u_knots());
+  const double v_length = length_of(surface.v_knots());
+  for (const BasisValues& at : along) {
+    const auto frame = [&](const BasisValues& side) {
+      return curve_frame(internal::derivatives_from(surface, tangent_is_u ? at : side,
+                                                    tangent_is_u ? side : at, 2),
+                         tangent_is_u, 1.0, size, u_length, v_length);
+    };
+    const CurveFrame below = frame(sides[0]);
+    const CurveFrame above = frame(sides[1]);
+    if (!below.regular || !above.regular) continue;
+    line->max_angle_rad = std::max(line->max_angle_rad, angle_between(below.normal, above.normal));
+    line->max_curvature_jump =
+        std::max(line->max_curvature_jump, std::abs(below.curvature - above.curvature));
   }
 }
 
@@ -84,6 +97,7 @@ std::vector<KnotLine> interior_smoothness(const Surface& surface, Direction dire
                                           double size) {
   const KnotVector& knots = knots_of(surface, direction);
   std::vector<KnotLine> lines;
+  std::vector<BasisValues> along;  // filled when it is needed
   for (double knot : knots.breaks()) {
     if (knot == knots.begin() || knot == knots.end()) continue;
     KnotLine line;
@@ -96,7 +110,11 @@ std::vector<KnotLine> interior_smoothness(const Surface& surface, Direction dire
     if (order >= 2) {
       line.measured = Smoothness::kCurvature;
     } else {
-      measure_line(surface, direction, size, &line);
+      if (along.empty()) {
+        along = bases_along(
+            knots_of(surface, direction == Direction::kU ? Direction::kV : Direction::kU));
+      }
+      measure_line(surface, direction, along, size, &line);
       line.measured = std::max(
           line.guaranteed, classify_smoothness(line.max_angle_rad, line.max_curvature_jump, size));
     }

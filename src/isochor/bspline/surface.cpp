@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "isochor/base/error.h"
+#include "isochor/bspline/surface_derivatives.h"
 
 namespace isochor {
 namespace {
@@ -52,35 +53,45 @@ Vec3 Surface::point(double u, double v) const { return derivatives(u, v, 0).s; }
 SurfaceDerivatives Surface::derivatives(double u, double v, int order, Limit u_limit,
                                         Limit v_limit) const {
   ISOCHOR_REQUIRE(0 <= order && order <= 2, order);
-  const BasisValues bu = evaluate_basis_on_span(u_knots_, span_for(u_knots_, u, u_limit), u, order);
-  const BasisValues bv = evaluate_basis_on_span(v_knots_, span_for(v_knots_, v, v_limit), v, order);
+  return internal::derivatives_from(*this, internal::basis_at(u_knots_, u, order, u_limit),
+                                    internal::basis_at(v_knots_, v, order, v_limit), order);
+}
 
+BasisValues internal::basis_at(const KnotVector& knots, double t, int order, Limit limit) {
+  return evaluate_basis_on_span(knots, span_for(knots, t, limit), t, order);
+}
+
+SurfaceDerivatives internal::derivatives_from(const Surface& surface, const BasisValues& bu,
+                                              const BasisValues& bv, int order) {
+  const std::vector<Vec3>& poles = surface.poles();
+  const std::vector<double>& weights = surface.weights();
+  const bool rational = surface.rational();
   // Derivatives of the weighted numerator a and the denominator w, indexed [k][l] for d^k_u d^l_v.
   Vec3 a[3][3];
   double w[3][3];
-  for (int k = 0; k <= order; ++k) {
-    for (int l = 0; k + l <= order; ++l) {
-      Vec3 sum = Vec3::Zero();
-      double weight_sum = 0.0;
-      for (int i = 0; i <= bu.degree; ++i) {
-        Vec3 row = Vec3::Zero();
-        double weight_row = 0.0;
-        for (int j = 0; j <= bv.degree; ++j) {
-          const size_t at = index(bu.first + i, bv.first + j);
-          const double b = rational() ? bv.value(l, j) * weights_[at] : bv.value(l, j);
-          row += b * poles_[at];
-          weight_row += b;
-        }
-        sum += bu.value(k, i) * row;
-        weight_sum += bu.value(k, i) * weight_row;
+  for (int l = 0; l <= order; ++l) {
+    for (int k = 0; k + l <= order; ++k) {
+      a[k][l].setZero();
+      w[k][l] = 0.0;
+    }
+    for (int i = 0; i <= bu.degree; ++i) {
+      Vec3 row = Vec3::Zero();
+      double weight_row = 0.0;
+      for (int j = 0; j <= bv.degree; ++j) {
+        const size_t at = surface.index(bu.first + i, bv.first + j);
+        const double b = rational ? bv.value(l, j) * weights[at] : bv.value(l, j);
+        row += b * poles[at];
+        weight_row += b;
       }
-      a[k][l] = sum;
-      w[k][l] = weight_sum;
+      for (int k = 0; k + l <= order; ++k) {
+        a[k][l] += bu.value(k, i) * row;
+        w[k][l] += bu.value(k, i) * weight_row;
+      }
     }
   }
 
   SurfaceDerivatives out;
-  if (!rational()) {
+  if (!rational) {
     out.s = a[0][0];
     if (order >= 1) out.su = a[1][0], out.sv = a[0][1];
     if (order >= 2) out.suu = a[2][0], out.suv = a[1][1], out.svv = a[0][2];
