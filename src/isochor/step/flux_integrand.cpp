@@ -60,6 +60,9 @@ struct FluxIntegrand<Kind>::Line {
 
   Line(const Surface& surface, int low_index, int high_index, double v) : low(low_index) {
     const BasisValues b = evaluate_basis(surface.v_knots(), v, 1);
+    const auto count = static_cast<size_t>(high_index - low_index) + 1;
+    value.reserve(count);
+    slope.reserve(count);
     for (int i = low_index; i <= high_index; ++i) {
       Homogeneous at, derivative;
       for (int j = 0; j <= b.degree; ++j) {
@@ -181,8 +184,10 @@ void FluxIntegrand<Kind>::add_point(const gp_Pnt& p, const gp_Vec& du, const gp_
                                     Sums& sums) const {
   // Positions are good to eps |p|, derivatives to eps |p| per step of the knots.
   const double reach = std::abs(p.X()) + std::abs(p.Y()) + std::abs(p.Z());
-  kind_.add({p, du, dv, reach, du.Magnitude() + u_degree_ * reach / least_u_step_,
-             dv.Magnitude() + v_degree_ * reach / least_v_step_},
+  const double speed_u = du.Magnitude();
+  const double speed_v = dv.Magnitude();
+  kind_.add({p, du, dv, speed_u, speed_v, reach, speed_u + u_degree_ * reach / least_u_step_,
+             speed_v + v_degree_ * reach / least_v_step_},
             w, sums);
 }
 

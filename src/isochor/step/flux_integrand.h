@@ -32,6 +32,7 @@ UnitRule unit_rule(int count);
 struct SurfacePoint {
   gp_Pnt p;
   gp_Vec du, dv;
+  double speed_u = 0.0, speed_v = 0.0;  // |du|, |dv|
   double reach = 0.0, noisy_u = 0.0, noisy_v = 0.0;
 };
 

@@ -33,8 +33,7 @@ void FluxKind::add(const SurfacePoint& at, double w, FluxSums& sums) const {
   sums.flux += w * height * jacobian;
   sums.projected += w * jacobian;
   sums.area += w * at.du.Crossed(at.dv).Magnitude();
-  const double mixed =
-      std::abs(w) * (at.noisy_u * at.dv.Magnitude() + at.noisy_v * at.du.Magnitude());
+  const double mixed = std::abs(w) * (at.noisy_u * at.speed_v + at.noisy_v * at.speed_u);
   sums.size += std::abs(w * height * jacobian);
   sums.noise += std::abs(height) * mixed + c.norm() * at.reach * std::abs(w * jacobian);
   sums.projected_noise += mixed;
@@ -68,8 +67,8 @@ void MomentKind::add(const SurfacePoint& at, double w, MomentSums& sums) const {
   const double slip = at.reach / length;  // what an error of the position is relative to
   // The error of r.N; then f(r) changes by its slope, at most twice |r|, times that of r.
   const double noise =
-      std::abs(w) * (r.norm() * (at.noisy_u * at.dv.Magnitude() + at.noisy_v * at.du.Magnitude()) +
-                     slip * normal.norm());
+      std::abs(w) *
+      (r.norm() * (at.noisy_u * at.speed_v + at.noisy_v * at.speed_u) + slip * normal.norm());
   const MomentArray f = monomials(r);
   for (size_t k = 0; k < kMomentCount; ++k) {
     const double slope = k == 0 ? 0.0 : k < 4 ? 1.0 : 2.0 * r.norm();

@@ -1,8 +1,11 @@
 #include "isochor/step/gaps.h"
 
 #include <BRep_Tool.hxx>
+#include <Geom2dAdaptor_Curve.hxx>
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_Curve.hxx>
+#include <Geom2d_Line.hxx>
+#include <GeomAdaptor_Curve.hxx>
 #include <Geom_BSplineCurve.hxx>
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Surface.hxx>
@@ -10,6 +13,8 @@
 #include <TopExp_Explorer.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Edge.hxx>
+#include <TopoDS_Face.hxx>
 #include <TopoDS_Vertex.hxx>
 #include <algorithm>
 
@@ -21,41 +26,77 @@ constexpr int kLeastSamples = 32;
 constexpr int kSamplesPerSpan = 6;
 constexpr int kMostSamples = 512;
 
+// Adaptors remember the span they were last asked for.
 struct SpaceCurve {
   Handle(Geom_Curve) curve;
   double first = 0.0, last = 0.0;
-  explicit SpaceCurve(const TopoDS_Edge& edge) { curve = BRep_Tool::Curve(edge, first, last); }
-  gp_Pnt at(double fraction) const { return curve->Value(first + fraction * (last - first)); }
+  GeomAdaptor_Curve values;
+
+  explicit SpaceCurve(const TopoDS_Edge& edge) {
+    curve = BRep_Tool::Curve(edge, first, last);
+    if (known()) values.Load(curve);
+  }
+  bool known() const { return !curve.IsNull(); }
+  gp_Pnt at(double fraction) const { return values.Value(first + fraction * (last - first)); }
+  int spans() const {
+    const auto spline = Handle(Geom_BSplineCurve)::DownCast(curve);
+    return spline.IsNull() ? 1 : spline->NbKnots();
+  }
 };
 
 // The curve of an edge on a face.
-struct FaceCurve {
-  Handle(Geom2d_Curve) curve;
-  Handle(Geom_Surface) surface;
-  double first = 0.0, last = 0.0;
+class FaceCurve {
+ public:
   FaceCurve(const TopoDS_Edge& edge, const TopoDS_Face& face) {
-    curve = BRep_Tool::CurveOnSurface(edge, face, first, last);
-    surface = BRep_Tool::Surface(face);
+    curve_ = BRep_Tool::CurveOnSurface(edge, face, first_, last_);
+    surface_ = BRep_Tool::Surface(face);
+    if (!known()) return;
+    values_.Load(curve_);
+    follow_parameter_line();
   }
-  bool known() const { return !curve.IsNull() && !surface.IsNull(); }
+  bool known() const { return !curve_.IsNull() && !surface_.IsNull(); }
   gp_Pnt at(double fraction) const {
-    const gp_Pnt2d uv = curve->Value(first + fraction * (last - first));
-    return surface->Value(uv.X(), uv.Y());
+    const gp_Pnt2d uv = values_.Value(first_ + fraction * (last_ - first_));
+    if (runs_ == Runs::kAnyhow) return surface_->Value(uv.X(), uv.Y());
+    return line_.Value(runs_ == Runs::kAlongU ? uv.X() : uv.Y());
   }
+  // Of the composed curve: knots of a direction in which it does not run are not met.
+  int spans() const {
+    if (runs_ != Runs::kAnyhow) return line_.NbKnots();
+    const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface_);
+    const auto flat = Handle(Geom2d_BSplineCurve)::DownCast(curve_);
+    return std::max(spline.IsNull() ? 1 : std::max(spline->NbUKnots(), spline->NbVKnots()),
+                    flat.IsNull() ? 1 : flat->NbKnots());
+  }
+
+ private:
+  enum class Runs { kAnyhow, kAlongU, kAlongV };
+
+  // A straight line along one parameter stays on one curve of the surface, which is cheaper.
+  void follow_parameter_line() {
+    const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface_);
+    const auto line = Handle(Geom2d_Line)::DownCast(curve_);
+    if (spline.IsNull() || line.IsNull()) return;
+    if (line->Direction().X() == 0.0) {
+      runs_ = Runs::kAlongV;
+      line_.Load(spline->UIso(line->Location().X()));
+    } else if (line->Direction().Y() == 0.0) {
+      runs_ = Runs::kAlongU;
+      line_.Load(spline->VIso(line->Location().Y()));
+    }
+  }
+
+  Handle(Geom2d_Curve) curve_;
+  Handle(Geom_Surface) surface_;
+  double first_ = 0.0, last_ = 0.0;
+  Geom2dAdaptor_Curve values_;
+  Runs runs_ = Runs::kAnyhow;
+  GeomAdaptor_Curve line_;  // of the surface, when the curve runs along a parameter
 };
 
-int spans_of(const Handle(Geom_Surface) & surface) {
-  const auto spline = Handle(Geom_BSplineSurface)::DownCast(surface);
-  return spline.IsNull() ? 1 : std::max(spline->NbUKnots(), spline->NbVKnots());
-}
-
 int sample_count(const SpaceCurve& space, const FaceCurve& on_face) {
-  int spans = spans_of(on_face.surface);
-  const auto spline = Handle(Geom_BSplineCurve)::DownCast(space.curve);
-  if (!spline.IsNull()) spans = std::max(spans, spline->NbKnots());
-  const auto flat = Handle(Geom2d_BSplineCurve)::DownCast(on_face.curve);
-  if (!flat.IsNull()) spans = std::max(spans, flat->NbKnots());
-  return std::clamp(kSamplesPerSpan * spans, kLeastSamples, kMostSamples);
+  return std::clamp(kSamplesPerSpan * std::max(space.spans(), on_face.spans()), kLeastSamples,
+                    kMostSamples);
 }
 
 // Both vertices of the edge in the direction of its curve; they may be null.
@@ -71,23 +112,19 @@ double distance(const TopoDS_Vertex& vertex, const gp_Pnt& point) {
   return vertex.IsNull() ? 0.0 : BRep_Tool::Pnt(vertex).Distance(point);
 }
 
-}  // namespace
-
-double edge_gap(const TopoDS_Edge& edge, const TopoDS_Face& face) {
-  const SpaceCurve space(edge);
-  const FaceCurve on_face(edge, face);
-  if (!on_face.known()) return 0.0;
-  const Ends ends(edge);
+double gap_between(const SpaceCurve& space, const FaceCurve& on_face, const Ends& ends) {
   const int samples = sample_count(space, on_face);
   double largest = 0.0;
   for (int k = 0; k <= samples; ++k) {
     const double fraction = static_cast<double>(k) / samples;
     const gp_Pnt point = on_face.at(fraction);
-    largest = std::max(largest, space.curve.IsNull() ? distance(ends.first, point)
-                                                     : space.at(fraction).Distance(point));
+    largest = std::max(
+        largest, space.known() ? space.at(fraction).Distance(point) : distance(ends.first, point));
   }
   return largest;
 }
+
+}  // namespace
 
 Gaps measure_gaps(const TopoDS_Shape& shape) {
   TopTools_IndexedMapOfShape edges, vertices;
@@ -104,7 +141,7 @@ Gaps measure_gaps(const TopoDS_Shape& shape) {
   for (int k = 1; k <= edges.Extent(); ++k) {
     const auto& edge = TopoDS::Edge(edges(k));
     const SpaceCurve space(edge);
-    if (space.curve.IsNull()) continue;
+    if (!space.known()) continue;
     const Ends ends(edge);
     vertex_gap(ends.first, space.at(0.0));
     vertex_gap(ends.last, space.at(1.0));
@@ -114,10 +151,10 @@ Gaps measure_gaps(const TopoDS_Shape& shape) {
     for (TopExp_Explorer e(face, TopAbs_EDGE); e.More(); e.Next()) {
       const auto& edge = TopoDS::Edge(e.Current());
       double& gap = gaps.edges[static_cast<size_t>(edges.FindIndex(edge)) - 1];
-      gap = std::max(gap, edge_gap(edge, face));
       const FaceCurve on_face(edge, face);
       if (!on_face.known()) continue;
       const Ends ends(edge);
+      gap = std::max(gap, gap_between(SpaceCurve(edge), on_face, ends));
       vertex_gap(ends.first, on_face.at(0.0));
       vertex_gap(ends.last, on_face.at(1.0));
     }

@@ -5,21 +5,17 @@
 // the ends of all of these.
 #pragma once
 
-#include <TopoDS_Edge.hxx>
-#include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
 #include <vector>
 
 namespace isochor::internal {
 
-// The largest distance between the edge's curve and its curve on one face, at equal fractions of
-// their ranges; for a degenerated edge, the distance of the surface from the vertex. `edge` with
-// the orientation it has in the face (a seam has two curves).
-double edge_gap(const TopoDS_Edge& edge, const TopoDS_Face& face);
-
 struct Gaps {
-  std::vector<double> edges;     // in the order of TopExp::MapShapes(shape, TopAbs_EDGE)
-  std::vector<double> vertices;  // likewise
+  // The largest distance between the edge's curve and its curves on the faces, at equal fractions
+  // of their ranges; for a degenerated edge, the distance of the surface from the vertex. In the
+  // order of TopExp::MapShapes(shape, TopAbs_EDGE).
+  std::vector<double> edges;
+  std::vector<double> vertices;  // likewise, TopAbs_VERTEX
 };
 Gaps measure_gaps(const TopoDS_Shape& shape);
 

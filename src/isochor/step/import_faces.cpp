@@ -16,6 +16,7 @@ namespace {
 using Shapes = std::unordered_set<const void*>;  // by what located copies share
 
 Shapes shapes_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
+  if (shape.ShapeType() == kind) return {shape.TShape().get()};
   TopTools_IndexedMapOfShape parts;
   TopExp::MapShapes(shape, kind, parts);
   Shapes found;
@@ -23,14 +24,31 @@ Shapes shapes_of(const TopoDS_Shape& shape, TopAbs_ShapeEnum kind) {
   return found;
 }
 
-// The entities of the model by their numbers in the file.
-std::unordered_map<int, Handle(Standard_Transient)> numbered(const StepData_StepModel& model) {
-  std::unordered_map<int, Handle(Standard_Transient)> entities;
-  for (int k = 1; k <= model.NbEntities(); ++k) {
-    entities.emplace(model.IdentLabel(model.Value(k)), model.Value(k));
+// Finds the entities of the model by their numbers in the file.
+class NumberedEntities {
+ public:
+  explicit NumberedEntities(const StepData_StepModel& model) : model_(model) {}
+
+  // `place`: of the instance in the file, from 0; null when there is none of that number. The model
+  // keeps the order of the file, so its place is the first guess.
+  Handle(Standard_Transient) find(int number, size_t place) {
+    const int guess = static_cast<int>(place) + 1;
+    if (guess <= model_.NbEntities() && model_.IdentLabel(model_.Value(guess)) == number) {
+      return model_.Value(guess);
+    }
+    if (entities_.empty()) {
+      for (int k = 1; k <= model_.NbEntities(); ++k) {
+        entities_.emplace(model_.IdentLabel(model_.Value(k)), model_.Value(k));
+      }
+    }
+    const auto found = entities_.find(number);
+    return found == entities_.end() ? Handle(Standard_Transient)() : found->second;
   }
-  return entities;
-}
+
+ private:
+  const StepData_StepModel& model_;
+  std::unordered_map<int, Handle(Standard_Transient)> entities_;
+};
 
 // Looks for each stated face among those returned.
 void compare(const Document& document, const StatedShapes& stated, const Shapes& returned,
@@ -38,13 +56,13 @@ void compare(const Document& document, const StatedShapes& stated, const Shapes&
   const auto model = Handle(StepData_StepModel)::DownCast(document.session->Model());
   const auto process = document.session->TransferReader()->TransientProcess();
   if (model.IsNull() || process.IsNull()) return;
-  const auto entities = numbered(*model);
+  NumberedEntities entities(*model);
   Shapes claimed;
   for (const StatedFace& face : stated.faces) {
-    const auto entity = entities.find(static_cast<int>(face.number));
+    const auto entity = entities.find(static_cast<int>(face.number), face.place);
     bool found = false;
-    if (entity != entities.end()) {
-      const TopoDS_Shape result = TransferBRep::ShapeResult(process, entity->second);
+    if (!entity.IsNull()) {
+      const TopoDS_Shape result = TransferBRep::ShapeResult(process, entity);
       if (!result.IsNull()) {
         for (const void* part : shapes_of(result, TopAbs_FACE)) {
           if (returned.count(part) == 0) continue;

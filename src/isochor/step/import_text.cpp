@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <sstream>
 
 #include "isochor/base/error.h"
 
@@ -55,12 +53,16 @@ class Reading {
  public:
   explicit Reading(const Part21File& file) : file_(file) {
     const auto& instances = file.instances();
-    nodes_.resize(instances.size());
-    for (size_t k = 0; k < instances.size(); ++k) read(k);
-    for (size_t k = 0; k < nodes_.size(); ++k) {
+    nodes_.resize(instances.size() + 1);
+    for (size_t k = 0; k < instances.size(); ++k) {
+      nodes_[k].references = references_.size();
+      read(k);
+    }
+    nodes_.back().references = references_.size();
+    for (size_t k = 0; k < instances.size(); ++k) {
       if (nodes_[k].role == Role::kRepresentation) reach(k);
     }
-    for (size_t k = 0; k < nodes_.size(); ++k) count(k);
+    for (size_t k = 0; k < instances.size(); ++k) count(k);
     shapes_.entities = static_cast<int>(instances.size());
     if (more_broken_ > 0) shapes_.broken.push_back(std::to_string(more_broken_) + " more");
   }
@@ -71,7 +73,7 @@ class Reading {
   struct Node {
     Role role = Role::kOther;
     bool surface = false, reached = false, in_set = false;
-    std::vector<size_t> references;
+    size_t references = 0;  // where its references begin in references_; they end at the next one's
   };
 
   void broken(std::string text) {
@@ -99,7 +101,7 @@ class Reading {
     }
     for (const Part21Record& record : records) {
       if (node.role == Role::kOther) node.role = role_of(record.keyword);
-      for (const Part21Value& value : record.arguments) follow(instance, value, node);
+      for (const Part21Value& value : record.arguments) follow(instance, value);
     }
     node.surface = is_surface(records);
     if (node.role == Role::kPoint && !has_coordinates(records.front())) {
@@ -124,20 +126,20 @@ class Reading {
     return numbers > 0 && numbers < static_cast<long>(items.size());
   }
 
-  void follow(const Part21Instance& from, const Part21Value& value, Node& node) {
+  void follow(const Part21Instance& from, const Part21Value& value) {
     if (value.is(Part21Kind::kReference)) {
       const Part21Instance* to = file_.find(value.reference);
       if (to == nullptr) {
         broken(name(from) + ": refers to #" + std::to_string(value.reference) +
                ", which does not exist");
       } else {
-        node.references.push_back(static_cast<size_t>(to - file_.instances().data()));
+        references_.push_back(static_cast<size_t>(to - file_.instances().data()));
       }
     }
     if (value.is(Part21Kind::kList) && mixes_numbers(value.items)) {
       broken(name(from) + ": has a list that mixes numbers with what is none");
     }
-    for (const Part21Value& item : value.items) follow(from, item, node);
+    for (const Part21Value& item : value.items) follow(from, item);
   }
 
   void reach(size_t start) {
@@ -147,7 +149,8 @@ class Reading {
       waiting.pop_back();
       if (nodes_[k].reached) continue;
       nodes_[k].reached = true;
-      for (size_t to : nodes_[k].references) {
+      for (size_t at = nodes_[k].references; at < nodes_[k + 1].references; ++at) {
+        const size_t to = references_[at];
         if (nodes_[k].role == Role::kSet) nodes_[to].in_set = true;
         waiting.push_back(to);
       }
@@ -163,12 +166,13 @@ class Reading {
     shapes_.counts.shells += node.role == Role::kShell;
     if (!face) return;
     ++shapes_.counts.faces;
-    shapes_.faces.push_back({file_.instances()[k].number, name(file_.instances()[k])});
+    shapes_.faces.push_back({file_.instances()[k].number, k, name(file_.instances()[k])});
   }
 
   const Part21File& file_;
   StatedShapes shapes_;
-  std::vector<Node> nodes_;
+  std::vector<Node> nodes_;  // one for each instance, and an end
+  std::vector<size_t> references_;
   int more_broken_ = 0;
 };
 
@@ -189,10 +193,7 @@ StatedShapes unreadable(const std::string& path, const InputError& why) {
   StatedShapes shapes;
   shapes.readable = false;
   shapes.broken.push_back(why.entity() + ": " + why.reason());
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  shapes.counts.faces = rough_face_count(text.str());
+  shapes.counts.faces = rough_face_count(file_bytes(path));
   return shapes;
 }
 

@@ -16,6 +16,7 @@ namespace isochor::internal {
 
 struct StatedFace {
   std::uint64_t number = 0;
+  size_t place = 0;  // among the instances of the file
   std::string text;  // "#123 (line 45, ADVANCED_FACE)"
 };
 

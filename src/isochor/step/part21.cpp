@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 #include "isochor/base/error.h"
 #include "isochor/step/part21_text.h"
@@ -218,6 +217,13 @@ std::uint64_t Part21File::largest_number() const {
 }
 
 const Part21Instance* Part21File::find(std::uint64_t number) const {
+  // Most files number without gaps.
+  if (!by_number_.empty() && number >= instances_[by_number_.front()].number) {
+    const std::uint64_t place = number - instances_[by_number_.front()].number;
+    if (place < by_number_.size() && instances_[by_number_[place]].number == number) {
+      return &instances_[by_number_[place]];
+    }
+  }
   const auto found =
       std::lower_bound(by_number_.begin(), by_number_.end(), number,
                        [&](std::uint32_t k, std::uint64_t n) { return instances_[k].number < n; });
@@ -249,12 +255,16 @@ void Part21File::refuse(size_t offset, const std::string& reason) const {
   throw InputError(path_, "line " + std::to_string(line_of(offset)), reason);
 }
 
-Part21File load_part21(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
+std::string file_bytes(const std::string& path) {
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
   if (!in) throw InputError(path, "", "cannot be opened for reading");
-  std::ostringstream text;
-  text << in.rdbuf();
-  return Part21File(path, std::move(text).str());
+  std::string bytes(static_cast<size_t>(std::max<std::streamoff>(0, in.tellg())), '\0');
+  in.seekg(0);
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<size_t>(in.gcount()));
+  return bytes;
 }
+
+Part21File load_part21(const std::string& path) { return Part21File(path, file_bytes(path)); }
 
 }  // namespace isochor::internal

@@ -124,6 +124,9 @@ class Part21File {
   std::vector<std::uint32_t> by_number_;  // indices into instances_, by rising number
 };
 
+// All bytes of a file. Throws InputError when it cannot be opened.
+std::string file_bytes(const std::string& path);
+
 // Throws InputError when the file cannot be read.
 Part21File load_part21(const std::string& path);
 

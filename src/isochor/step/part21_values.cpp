@@ -12,6 +12,9 @@ namespace {
 // Schemas nest lists three deep; this leaves room and saves the stack.
 constexpr int kDeepest = 64;
 
+// Points have three coordinates, most entities four arguments or fewer.
+constexpr size_t kUsualItems = 4;
+
 class Parser {
  public:
   Parser(const Part21File& file, const Part21Instance& instance)
@@ -57,6 +60,7 @@ class Parser {
     std::vector<Part21Value> values;
     blanks();
     if (cursor_.take(')')) return values;
+    values.reserve(kUsualItems);
     for (;;) {
       blanks();
       values.push_back(value(depth));

@@ -16,13 +16,13 @@
 #include <XCAFDoc_ShapeTool.hxx>
 #include <XSControl_TransferReader.hxx>
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <sstream>
 
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
 #include "isochor/step/occt_progress.h"
+#include "isochor/step/part21.h"
 #include "isochor/step/step_unit.h"
 
 namespace isochor::internal {
@@ -33,13 +33,6 @@ constexpr size_t kListedNotices = 20;
 
 // The share of parsing in the time of reading, roughly.
 constexpr double kParsed = 0.25;
-
-std::string file_text(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 // The name in FILE_SCHEMA(('...')).
 std::string schema_of(const std::string& text) {
@@ -53,7 +46,7 @@ std::string schema_of(const std::string& text) {
 
 IFSelect_ReturnStatus parse_step(Document& document, STEPControl_Reader& reader) {
   constexpr const char* kMagic = "ISO-10303-21";
-  std::string text = file_text(document.path);
+  std::string text = file_bytes(document.path);
   const size_t start = text.find(kMagic);
   if (start == std::string::npos) {
     throw InputError(document.path, "", "is not a STEP file: 'ISO-10303-21' is missing");
