@@ -1,5 +1,7 @@
 #include "isochor/bspline/basis.h"
 
+#include <algorithm>
+
 #include "isochor/base/error.h"
 
 namespace isochor {
@@ -19,12 +21,14 @@ BasisValues evaluate_basis_on_span(const KnotVector& knots, int span, double u, 
 
   // lower[p][j]: the functions of degree p that live on the span, B_{span-p+j,p}(u). Only the last
   // `order` + 1 degrees are kept, which is all that derivatives need.
-  std::array<std::array<double, kMaxDegree + 1>, BasisValues::kMaxOrder + 1> lower{};
-  std::array<double, kMaxDegree + 1> current{};
+  // Only what is used is set: most degrees are far below the largest.
+  std::array<std::array<double, kMaxDegree + 1>, BasisValues::kMaxOrder + 1> lower;
+  std::array<double, kMaxDegree + 1> current;
   current[0] = 1.0;
   const auto keep = [&](int p) {
     const int derivative = d - p;
-    if (derivative <= order) lower[static_cast<size_t>(derivative)] = current;
+    if (derivative > order) return;
+    std::copy_n(current.begin(), p + 1, lower[static_cast<size_t>(derivative)].begin());
   };
   keep(0);
   for (int p = 1; p <= d; ++p) {

@@ -76,17 +76,18 @@ SurfaceDerivatives internal::derivatives_from(const Surface& surface, const Basi
     }
     for (int i = 0; i <= bu.degree; ++i) {
       Vec3 row = Vec3::Zero();
+      const size_t first = surface.index(bu.first + i, bv.first);
+      for (int j = 0; j <= bv.degree; ++j) {
+        const size_t at = first + static_cast<size_t>(j);
+        row += (rational ? bv.value(l, j) * weights[at] : bv.value(l, j)) * poles[at];
+      }
+      for (int k = 0; k + l <= order; ++k) a[k][l] += bu.value(k, i) * row;
+      if (!rational) continue;
       double weight_row = 0.0;
       for (int j = 0; j <= bv.degree; ++j) {
-        const size_t at = surface.index(bu.first + i, bv.first + j);
-        const double b = rational ? bv.value(l, j) * weights[at] : bv.value(l, j);
-        row += b * poles[at];
-        weight_row += b;
+        weight_row += bv.value(l, j) * weights[first + static_cast<size_t>(j)];
       }
-      for (int k = 0; k + l <= order; ++k) {
-        a[k][l] += bu.value(k, i) * row;
-        w[k][l] += bu.value(k, i) * weight_row;
-      }
+      for (int k = 0; k + l <= order; ++k) w[k][l] += bu.value(k, i) * weight_row;
     }
   }
 

@@ -4,6 +4,7 @@
 #include <BRep_Tool.hxx>
 #include <GCPnts_AbscissaPoint.hxx>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "isochor/base/tolerance.h"
@@ -57,6 +58,11 @@ double largest_gap(const BrepTable& table, const EdgeRecord& record,
   double gap = 0.0;
   const double first = curve.FirstParameter();
   const double last = curve.LastParameter();
+  std::array<gp_Pnt, kSamples + 1> points;
+  for (int k = 0; k <= kSamples; ++k) {
+    points[static_cast<size_t>(k)] =
+        curve.Value(first + (last - first) * (static_cast<double>(k) / kSamples));
+  }
   for (const EdgeSite& site : record.sites) {
     const EdgeUse& use = table.use(site);
     const auto& surface = table.faces[static_cast<size_t>(site.face)].surface.geometry;
@@ -64,8 +70,7 @@ double largest_gap(const BrepTable& table, const EdgeRecord& record,
     for (int k = 0; k <= kSamples; ++k) {
       const double s = static_cast<double>(k) / kSamples;
       const gp_Pnt2d at = use.curve->Value(pcurve_parameter(use, s));
-      gap = std::max(
-          gap, surface->Value(at.X(), at.Y()).Distance(curve.Value(first + (last - first) * s)));
+      gap = std::max(gap, surface->Value(at.X(), at.Y()).Distance(points[static_cast<size_t>(k)]));
     }
   }
   return gap;

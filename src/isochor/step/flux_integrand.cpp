@@ -8,6 +8,7 @@
 #include <math.hxx>
 #include <math_Vector.hxx>
 
+#include "isochor/base/error.h"
 #include "isochor/bspline/basis.h"
 #include "isochor/step/line_pieces.h"
 #include "isochor/step/occt_surface.h"
@@ -26,17 +27,6 @@ double least_step(const std::vector<double>& breaks) {
   for (size_t k = 1; k < breaks.size(); ++k) least = std::min(least, breaks[k] - breaks[k - 1]);
   return least;
 }
-
-// A homogeneous point, with or without weight.
-struct Homogeneous {
-  double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
-  void add(double factor, const Homogeneous& h) {
-    x += factor * h.x;
-    y += factor * h.y;
-    z += factor * h.z;
-    w += factor * h.w;
-  }
-};
 
 }  // namespace
 
@@ -118,14 +108,9 @@ typename FluxIntegrand<Kind>::Table FluxIntegrand<Kind>::table_of(int points) co
   if (!spline_) return table;
   const KnotVector& knots = spline_->u_knots();
   for (int span : knots.spans()) {
-    for (double node : table.rule.nodes) {
-      const double u = knots[span] + (knots[span + 1] - knots[span]) * node;
-      const BasisValues b = evaluate_basis_on_span(knots, span, u, 1);
-      for (int j = 0; j <= b.degree; ++j) {
-        table.values.push_back(b.value(0, j));
-        table.slopes.push_back(b.value(1, j));
-      }
-    }
+    const Table part = partial_table(knots, span, knots[span], knots[span + 1], table.rule);
+    table.values.insert(table.values.end(), part.values.begin(), part.values.end());
+    table.slopes.insert(table.slopes.end(), part.slopes.begin(), part.slopes.end());
   }
   return table;
 }
@@ -180,8 +165,8 @@ void FluxIntegrand<Kind>::choose_rules(double u_end, double v_low, double v_high
 }
 
 template <typename Kind>
-void FluxIntegrand<Kind>::add_point(const gp_Pnt& p, const gp_Vec& du, const gp_Vec& dv, double w,
-                                    Sums& sums) const {
+inline void FluxIntegrand<Kind>::add_point(const gp_Pnt& p, const gp_Vec& du, const gp_Vec& dv,
+                                           double w, Sums& sums) const {
   // Positions are good to eps |p|, derivatives to eps |p| per step of the knots.
   const double reach = std::abs(p.X()) + std::abs(p.Y()) + std::abs(p.Z());
   const double speed_u = du.Magnitude();
@@ -202,39 +187,79 @@ void FluxIntegrand<Kind>::add_piece(double from, double to, double v, const Unit
   }
 }
 
+// Basis functions of one span at `points` Gauss points, times the poles of a line: for all points
+// at once, so that the compiler can use vectors.
+template <typename Kind>
+inline void FluxIntegrand<Kind>::contract(const double* basis, const Homogeneous* poles,
+                                          size_t functions, size_t points, bool rational,
+                                          Coordinates& out) {
+  for (auto& coordinate : out) std::fill_n(coordinate.begin(), points, 0.0);
+  for (size_t j = 0; j < functions; ++j) {
+    const Homogeneous& h = poles[j];
+    const double* b = basis + j * points;
+    for (size_t k = 0; k < points; ++k) out[0][k] += b[k] * h.x;
+    for (size_t k = 0; k < points; ++k) out[1][k] += b[k] * h.y;
+    for (size_t k = 0; k < points; ++k) out[2][k] += b[k] * h.z;
+    if (!rational) continue;
+    for (size_t k = 0; k < points; ++k) out[3][k] += b[k] * h.w;
+  }
+}
+
+// The basis functions of one span between two of its parameters.
+template <typename Kind>
+typename FluxIntegrand<Kind>::Table FluxIntegrand<Kind>::partial_table(const KnotVector& knots,
+                                                                       int span, double from,
+                                                                       double to,
+                                                                       const UnitRule& rule) {
+  const size_t points = rule.nodes.size();
+  const auto functions = static_cast<size_t>(knots.degree()) + 1;
+  Table table;
+  table.values.resize(functions * points);
+  table.slopes.resize(functions * points);
+  for (size_t k = 0; k < points; ++k) {
+    const BasisValues b =
+        evaluate_basis_on_span(knots, span, from + (to - from) * rule.nodes[k], 1);
+    for (size_t j = 0; j < functions; ++j) {
+      table.values[j * points + k] = b.value(0, static_cast<int>(j));
+      table.slopes[j * points + k] = b.value(1, static_cast<int>(j));
+    }
+  }
+  return table;
+}
+
 template <typename Kind>
 void FluxIntegrand<Kind>::add_span(const Line& line, int ordinal, double from, double to,
                                    double sign, const Table& table, Sums& sums) const {
   const KnotVector& knots = spline_->u_knots();
   const int span = knots.spans()[static_cast<size_t>(ordinal)];
-  const auto count = static_cast<size_t>(knots.degree()) + 1;
+  const auto functions = static_cast<size_t>(knots.degree()) + 1;
+  const size_t points = table.rule.nodes.size();
+  ISOCHOR_REQUIRE(points <= kMostPoints, points);
   const bool whole = from == knots[span] && to == knots[span + 1];
-  const size_t first = static_cast<size_t>(span - knots.degree() - line.low);
-  BasisValues partial;
-  for (size_t k = 0; k < table.rule.nodes.size(); ++k) {
-    if (!whole) {
-      partial = evaluate_basis_on_span(knots, span, from + (to - from) * table.rule.nodes[k], 1);
-    }
-    const size_t at = (static_cast<size_t>(ordinal) * table.rule.nodes.size() + k) * count;
-    Homogeneous s, su, sv;
-    for (size_t j = 0; j < count; ++j) {
-      const double b = whole ? table.values[at + j] : partial.value(0, static_cast<int>(j));
-      const double slope = whole ? table.slopes[at + j] : partial.value(1, static_cast<int>(j));
-      s.add(b, line.value[first + j]);
-      su.add(slope, line.value[first + j]);
-      sv.add(b, line.slope[first + j]);
-    }
+  Table partial;
+  if (!whole) partial = partial_table(knots, span, from, to, table.rule);
+  const size_t offset = whole ? static_cast<size_t>(ordinal) * functions * points : 0;
+  const double* values = (whole ? table : partial).values.data() + offset;
+  const double* slopes = (whole ? table : partial).slopes.data() + offset;
+  const auto first = static_cast<size_t>(span - knots.degree() - line.low);
+  const bool rational = spline_->rational();
+  Coordinates s, su, sv;
+  contract(values, &line.value[first], functions, points, rational, s);
+  contract(slopes, &line.value[first], functions, points, rational, su);
+  contract(values, &line.slope[first], functions, points, rational, sv);
+  for (size_t k = 0; k < points; ++k) {
     const double weight = sign * (to - from) * table.rule.weights[k];
-    if (!spline_->rational()) {
-      add_point({s.x, s.y, s.z}, {su.x, su.y, su.z}, {sv.x, sv.y, sv.z}, weight, sums);
+    if (!rational) {
+      add_point({s[0][k], s[1][k], s[2][k]}, {su[0][k], su[1][k], su[2][k]},
+                {sv[0][k], sv[1][k], sv[2][k]}, weight, sums);
       continue;
     }
-    const double w = s.w;
-    const gp_Pnt p(s.x / w, s.y / w, s.z / w);
-    const gp_Vec du((su.x - su.w * p.X()) / w, (su.y - su.w * p.Y()) / w,
-                    (su.z - su.w * p.Z()) / w);
-    const gp_Vec dv((sv.x - sv.w * p.X()) / w, (sv.y - sv.w * p.Y()) / w,
-                    (sv.z - sv.w * p.Z()) / w);
+    const double w = s[3][k];
+    const gp_Pnt p(s[0][k] / w, s[1][k] / w, s[2][k] / w);
+    const gp_Vec du((su[0][k] - su[3][k] * p.X()) / w, (su[1][k] - su[3][k] * p.Y()) / w,
+                    (su[2][k] - su[3][k] * p.Z()) / w);
+    const gp_Vec dv((sv[0][k] - sv[3][k] * p.X()) / w, (sv[1][k] - sv[3][k] * p.Y()) / w,
+                    (sv[2][k] - sv[3][k] * p.Z()) / w);
     add_point(p, du, dv, weight, sums);
   }
 }

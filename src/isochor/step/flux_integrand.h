@@ -9,6 +9,7 @@
 #include <Geom_Surface.hxx>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <gp_Pnt.hxx>
 #include <gp_Vec.hxx>
 #include <optional>
@@ -26,6 +27,17 @@ struct UnitRule {
   std::vector<double> nodes, weights;
 };
 UnitRule unit_rule(int count);
+
+// A homogeneous point, with or without weight.
+struct Homogeneous {
+  double x = 0.0, y = 0.0, z = 0.0, w = 0.0;
+  void add(double factor, const Homogeneous& h) {
+    x += factor * h.x;
+    y += factor * h.y;
+    z += factor * h.z;
+    w += factor * h.w;
+  }
+};
 
 // A point of the surface with what its rounding errors are relative to: `reach` for the position,
 // the noisy speeds, which hold it too, for the derivatives.
@@ -56,6 +68,7 @@ struct FluxKind {
 
   double z0 = 0.0;
   FluxField field = {};
+  double steepness = field.slope.norm();
   void add(const SurfacePoint& at, double weight, FluxSums& sums) const;
 };
 
@@ -81,6 +94,42 @@ struct MomentKind {
   double length = 1.0;
   void add(const SurfacePoint& at, double weight, MomentSums& sums) const;
 };
+
+// Here, so that they become part of the loops over points.
+inline void FluxKind::add(const SurfacePoint& at, double w, FluxSums& sums) const {
+  const Vec3& c = field.slope;
+  const Vec3& b = field.direction;
+  const double height = (c.x() * at.p.X() + c.y() * at.p.Y() + c.z() * at.p.Z() - field.level) - z0;
+  const double jacobian = b.x() * (at.du.Y() * at.dv.Z() - at.dv.Y() * at.du.Z()) +
+                          b.y() * (at.du.Z() * at.dv.X() - at.dv.Z() * at.du.X()) +
+                          b.z() * (at.du.X() * at.dv.Y() - at.dv.X() * at.du.Y());
+  sums.flux += w * height * jacobian;
+  sums.projected += w * jacobian;
+  sums.area += w * at.du.Crossed(at.dv).Magnitude();
+  const double mixed = std::abs(w) * (at.noisy_u * at.speed_v + at.noisy_v * at.speed_u);
+  sums.size += std::abs(w * height * jacobian);
+  sums.noise += std::abs(height) * mixed + steepness * at.reach * std::abs(w * jacobian);
+  sums.projected_noise += mixed;
+}
+
+inline void MomentKind::add(const SurfacePoint& at, double w, MomentSums& sums) const {
+  const Vec3 r = (Vec3(at.p.X(), at.p.Y(), at.p.Z()) - origin) / length;
+  const gp_Vec cross = at.du.Crossed(at.dv);
+  const Vec3 normal(cross.X(), cross.Y(), cross.Z());
+  const double flux = w * r.dot(normal);
+  const double slip = at.reach / length;  // what an error of the position is relative to
+  // The error of r.N; then f(r) changes by its slope, at most twice |r|, times that of r.
+  const double noise =
+      std::abs(w) *
+      (r.norm() * (at.noisy_u * at.speed_v + at.noisy_v * at.speed_u) + slip * normal.norm());
+  const MomentArray f = monomials(r);
+  for (size_t k = 0; k < kMomentCount; ++k) {
+    const double slope = k == 0 ? 0.0 : k < 4 ? 1.0 : 2.0 * r.norm();
+    sums.value[k] += f[k] * flux;
+    sums.noise[k] += std::abs(f[k]) * noise + slope * slip * std::abs(flux);
+  }
+  sums.size += std::abs(flux);
+}
 
 // Instantiated for the two kinds.
 template <typename Kind>
@@ -117,11 +166,17 @@ class FluxIntegrand {
   // Basis functions of u at the Gauss points of every span.
   struct Table {
     UnitRule rule;
-    std::vector<double> values, slopes;  // [span][point][function]
+    std::vector<double> values, slopes;  // [span][function][point]
   };
+  static constexpr size_t kMostPoints = 64;
+  using Coordinates = std::array<std::array<double, kMostPoints>, 4>;  // x, y, z, w of points
 
   int exact_points() const { return (Kind::kFactors * u_degree_ + 1) / 2; }
   Table table_of(int points) const;
+  static Table partial_table(const KnotVector& knots, int span, double from, double to,
+                             const UnitRule& rule);
+  static void contract(const double* basis, const Homogeneous* poles, size_t functions,
+                       size_t points, bool rational, Coordinates& out);
   void choose_rules(double u_end, double v_low, double v_high);
   Sums line(double u, double v, const Table& table) const;
   void add_span(const Line& line, int ordinal, double from, double to, double sign,
