@@ -32,28 +32,35 @@ std::string exact_text(const LoadedModel& loaded) {
   return ExactVolume(loaded.patches).value(frame.points(loaded.patches.points)).to_string();
 }
 
+// Says why an open model has no volume, and what would close it.
+void refuse_open(const LoadedModel& loaded, bool measured, const Common& common) {
+  refuse(loaded.path + ": the model is open (" + loaded.surroundings.why_open +
+         ") and encloses no volume; " +
+         (measured ? "it has no moments, no sections and nothing below a plane"
+                   : "--open prints the integral of z dx dy"));
+  if (!loaded.opening.empty()) refuse(loaded.path + ": " + loaded.opening);
+  print_json(common, Value::object()
+                         .set("outcome", "refused")
+                         .set("reason", "open: " + loaded.surroundings.why_open)
+                         .set("opening", loaded.opening));
+}
+
 }  // namespace
 
 int run_volume(const VolumeOptions& options, const Common& common) {
   if (!options.section.empty()) require_plane(options.section);
-  const LoadedModel loaded = load_model(
-      options.model, common, {}, {options.moments, options.section, parse_close(options.close)});
-  const bool measured = options.moments || !options.section.empty();
+  const std::vector<ClosingPlane> close = parse_close(options.close);
+  const std::optional<ClosingPlane> waterline = parse_below(options.below, close);
+  const LoadedModel loaded =
+      load_model(options.model, common, {}, {options.moments, options.section, close, waterline});
+  const bool measured = options.moments || !options.section.empty() || waterline;
   if (!loaded.surroundings.closing.empty() && !options.section.empty()) {
     throw InputError(options.model, "--section",
                      "cuts an open curve out of a model that planes close: sections of those are "
                      "not available in this version");
   }
   if (!loaded.surroundings.closed && (measured || !options.open)) {
-    refuse(
-        options.model + ": the model is open (" + loaded.surroundings.why_open +
-        ") and encloses no volume; " +
-        (measured ? "it has no moments and no sections" : "--open prints the integral of z dx dy"));
-    if (!loaded.opening.empty()) refuse(options.model + ": " + loaded.opening);
-    print_json(common, Value::object()
-                           .set("outcome", "refused")
-                           .set("reason", "open: " + loaded.surroundings.why_open)
-                           .set("opening", loaded.opening));
+    refuse_open(loaded, measured, common);
     return kExitNo;
   }
   Value result = Value::object().set("volume", loaded.volume).set("bound", loaded.volume_bound);
@@ -76,6 +83,11 @@ int run_volume(const VolumeOptions& options, const Common& common) {
     section = section_of(loaded, options.section);
     result.set("section", to_value(*section));
   }
+  std::optional<PartBelow> below;
+  if (waterline) {
+    below = below_of(loaded, *waterline);
+    result.set("below", to_value(*below, loaded));
+  }
   if (!options.gradient.empty()) {
     Value rows = Value::list();
     for (const Vec3& row :
@@ -91,6 +103,7 @@ int run_volume(const VolumeOptions& options, const Common& common) {
   if (options.exact) print(common, "exact: " + exact);
   if (moments) print_moments(common, *moments, loaded.patches.unit);
   if (section) print_section(common, *section, loaded.patches.unit);
+  if (below) print_below(common, *below, loaded);
   if (!options.gradient.empty()) print(common, "gradient: " + options.gradient);
   print_json(common, result);
   return kExitDone;

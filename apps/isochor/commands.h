@@ -43,6 +43,7 @@ struct VolumeOptions {
   bool open = false;
   bool moments = false;
   std::vector<double> section;  // NX,NY,NZ,H, or empty
+  std::string below;            // a plane as --close has them, or empty
   std::string gradient;         // file to write
   std::vector<std::string> close;
 };

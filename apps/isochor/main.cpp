@@ -77,6 +77,10 @@ int run(int argc, char** argv) {
       ->delimiter(',')
       ->expected(4)
       ->option_text("NX,NY,NZ,H");
+  sub->add_option("--below", volume.below,
+                  "volume and centroid of the part below a plane, with bounds: z=0.4, or "
+                  "NX,NY,NZ,H for NX x + NY y + NZ z < H")
+      ->option_text("PLANE");
   sub->add_option("--gradient", volume.gradient, "write dV/dx, dV/dy, dV/dz of every point");
   add_close(*sub, volume.close);
   add_common(*sub, common);

@@ -184,6 +184,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
   options.moments = measures.moments;
   options.section = measures.section;
   options.close = measures.close;
+  options.below = measures.below;
   SolidModel solid = read_solid(path, options);
   for (const std::string& name : convert) {
     const int face = find_face(solid, name);

@@ -45,6 +45,7 @@ struct ShapeMeasures {
   bool moments = false;
   std::vector<double> section;      // NX, NY, NZ, H, or empty
   std::vector<ClosingPlane> close;  // planes that close the model
+  std::optional<ClosingPlane> below = {};
 };
 
 // The planes that --close names. InputError for what is no plane.

@@ -16,6 +16,30 @@ Value rows_of(const Matrix3& matrix) {
   return rows;
 }
 
+#ifdef ISOCHOR_WITH_OCCT
+// The patches are all of the model.
+bool whole_patches(const LoadedModel& loaded) {
+  if (!loaded.solid) return true;
+  const auto& faces = loaded.solid->faces;
+  return std::all_of(faces.begin(), faces.end(), [](const FaceFacts& face) {
+    return face.patch >= 0 && face.trim == TrimKind::kNatural;
+  });
+}
+#endif
+
+const char* name_of(PlaneSide side) {
+  return side == PlaneSide::kCut          ? "part"
+         : side == PlaneSide::kEverything ? "everything"
+                                          : "nothing";
+}
+
+// Of a half model only the half is counted.
+std::string counted_text(const LoadedModel& loaded) {
+  const auto& planes = loaded.surroundings.closing;
+  if (planes.empty()) return "the model";
+  return "the model as closed by " + text_of(planes) + ", without any mirror image";
+}
+
 std::string triple(const Vec3& v) { return format("%.17g %.17g %.17g", v.x(), v.y(), v.z()); }
 
 void print_tensor(const Common& common, const char* name, const Matrix3& tensor,
@@ -87,13 +111,7 @@ void require_plane(const std::vector<double>& plane) {
 
 Section section_of(const LoadedModel& loaded, const std::vector<double>& plane) {
 #ifdef ISOCHOR_WITH_OCCT
-  if (loaded.solid) {
-    const auto& faces = loaded.solid->faces;
-    const bool whole_patches = std::all_of(faces.begin(), faces.end(), [](const FaceFacts& face) {
-      return face.patch >= 0 && face.trim == TrimKind::kNatural;
-    });
-    if (!whole_patches && loaded.solid->section) return *loaded.solid->section;
-  }
+  if (!whole_patches(loaded) && loaded.solid->section) return *loaded.solid->section;
 #endif
   return section(loaded.patches, Vec3(plane[0], plane[1], plane[2]), plane[3]);
 }
@@ -116,6 +134,56 @@ void print_section(const Common& common, const Section& s, const std::string& un
                       triple(s.centroid));
   }
   if (s.coplanar) print(common, "a face lies in the plane: the area is the limit from below");
+}
+
+std::optional<ClosingPlane> parse_below(const std::string& text,
+                                        const std::vector<ClosingPlane>& close) {
+  if (text.empty()) return std::nullopt;
+  try {
+    const ClosingPlane plane = parse_waterline(text);
+    (void)require_field_below(plane, close);
+    return plane;
+  } catch (const InputError& error) {
+    throw InputError("--below", error.entity(), error.reason());
+  }
+}
+
+PartBelow below_of(const LoadedModel& loaded, const ClosingPlane& plane) {
+#ifdef ISOCHOR_WITH_OCCT
+  if (!whole_patches(loaded) && loaded.solid->below) return *loaded.solid->below;
+#endif
+  return part_below(loaded.patches, plane, loaded.surroundings.closing);
+}
+
+Value to_value(const PartBelow& part, const LoadedModel& loaded) {
+  const bool known = !std::isinf(part.centroid_bound);
+  return Value::object()
+      .set("normal", part.normal)
+      .set("height", part.height)
+      .set("extent", name_of(part.side))
+      .set("volume", part.volume)
+      .set("bound", part.bound)
+      .set("proven", part.proven)
+      .set("centroid", known ? Value(part.centroid) : Value())
+      .set("centroid_bound", part.centroid_bound)
+      .set("counted", counted_text(loaded));
+}
+
+void print_below(const Common& common, const PartBelow& part, const LoadedModel& loaded) {
+  const char* unit = loaded.patches.unit.c_str();
+  const std::string plane = text_of({part.normal, part.height, false});
+  print(common, format("below %s, %s^3: %.17g (error at most %.2g%s)", plane.c_str(), unit,
+                       part.volume, part.bound, part.proven ? "" : ", an estimate"));
+  if (part.side != PlaneSide::kCut) {
+    print(common,
+          std::string("the plane misses the model: ") + name_of(part.side) + " of it lies below");
+  }
+  if (!std::isinf(part.centroid_bound)) {
+    print(common,
+          format("centroid of that part, %s (error at most %.2g): ", unit, part.centroid_bound) +
+              triple(part.centroid));
+  }
+  if (!loaded.surroundings.closing.empty()) print(common, "counted: " + counted_text(loaded));
 }
 
 }  // namespace isochor::app

@@ -1,7 +1,8 @@
-// Moments and sections as `isochor volume --moments --section` prints them.
+// What `isochor volume --moments --section --below` measures and prints.
 #pragma once
 
 #include "isochor/io/value.h"
+#include "isochor/volume/below.h"
 #include "isochor/volume/moments.h"
 #include "isochor/volume/section.h"
 #include "model_source.h"
@@ -24,5 +25,17 @@ Section section_of(const LoadedModel& loaded, const std::vector<double>& plane);
 // The value of the key "section".
 Value to_value(const Section& section);
 void print_section(const Common& common, const Section& section, const std::string& unit);
+
+// The plane of --below; empty for an empty text. InputError for what is no plane, and for one that
+// does not go with the closing planes.
+std::optional<ClosingPlane> parse_below(const std::string& text,
+                                        const std::vector<ClosingPlane>& close);
+// What a closed model, or one closed by planes, has below: of its patches where they are the whole
+// model, else as the reader of the CAD file measured it.
+PartBelow below_of(const LoadedModel& loaded, const ClosingPlane& plane);
+
+// The value of the key "below".
+Value to_value(const PartBelow& part, const LoadedModel& loaded);
+void print_below(const Common& common, const PartBelow& part, const LoadedModel& loaded);
 
 }  // namespace isochor::app

@@ -394,6 +394,42 @@ class Check(Scenario):
         self.assertEqual(sum(row["edges"] for row in check["edges_by_angle"]), 8)
         self.expect(3, "check", CUBE, "--picture", "check.jpg", says="png")
 
+    def test_volume_below_a_plane(self):
+        below = self.run_json("volume", CUBE, "--below", "z=0.25")["below"]
+        self.assertEqual((below["extent"], below["proven"]), ("part", True))
+        self.assertLessEqual(abs(below["volume"] - 0.25), below["bound"])
+        self.assertLess(below["bound"], 1e-11)
+        self.assertAlmostEqual(below["centroid"][2], 0.125, delta=below["centroid_bound"])
+        above = self.run_json("volume", CUBE, "--below=0,0,-2,-0.5")["below"]
+        self.assertLessEqual(abs(above["volume"] - 0.75), above["bound"])
+        text = isochor("volume", CUBE, "--below", "z=2").stdout
+        self.assertIn("the plane misses the model: everything of it lies below", text)
+        nothing = self.run_json("volume", CUBE, "--below", "z=-1")["below"]
+        self.assertEqual((nothing["extent"], nothing["volume"], nothing["centroid"]), ("nothing", 0, None))
+
+    def test_displacement_of_a_hull_is_its_sections_added_up(self):
+        draughts = [self.run_json("volume", HULL, "--below", f"z={z}")["below"] for z in (1, 1.01)]
+        area = [self.run_json("volume", HULL, f"--section=0,0,1,{z}")["section"]["area"] for z in (1, 1.005, 1.01)]
+        simpson = 0.01 / 6 * (area[0] + 4 * area[1] + area[2])
+        self.assertAlmostEqual(draughts[1]["volume"] - draughts[0]["volume"], simpson, delta=1e-8)
+        self.assertFalse(draughts[0]["proven"], "trims are an estimate")
+        self.assertAlmostEqual(draughts[0]["centroid"][1], 0, delta=draughts[0]["centroid_bound"])
+        text = isochor("volume", HULL, "--below", "z=1").stdout
+        self.assertIn("centroid of that part, m", text)
+
+    def test_half_models_below_a_plane(self):
+        option = self.run_json("check", self.open_cube(), code=1)["opening"].split(": ")[-1].split()[1]
+        below = self.run_json("volume", self.open_cube(), "--close", option, "--below", "0.6,0.8,0,0.7")["below"]
+        self.assertLessEqual(abs(below["volume"] - 0.5), below["bound"])
+        self.assertIn("closed by the plane", below["counted"])
+        self.assertIn("without any mirror image", below["counted"])
+        refused = self.run_json("volume", self.open_cube(), "--below", "z=0.5", code=1)
+        self.assertIn("--close", refused["opening"])
+        self.expect(1, "volume", self.open_cube(), "--below", "z=0.5", says="nothing below a plane")
+        self.expect(3, "volume", CUBE, "--below", "z<1", says="--below")
+        self.expect(3, "volume", self.open_cube(), "--close", "x=0", "--close", "y=0", "--close=1,1,1,0", "--close=1,-1,2,3",
+                    "--below", "z=0.5", says="close")
+
     def test_planes_close_the_cube(self):
         option = self.run_json("check", self.open_cube(), code=1)["opening"].split(": ")[-1].split()[1]
         check = self.run_json("check", self.open_cube(), "--close", option)

@@ -18,6 +18,7 @@
 #include "isochor/step/edge_measures.h"
 #include "isochor/step/flux.h"
 #include "isochor/step/shape_facts.h"
+#include "isochor/step/solid_below.h"
 #include "isochor/step/solid_moments.h"
 #include "isochor/step/solid_section.h"
 
@@ -185,6 +186,9 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   if (!options.section.empty() && model.facts.closed) {
     const auto& plane = options.section;
     model.section = shape_section(document.shape, Vec3(plane[0], plane[1], plane[2]), plane[3]);
+  }
+  if (options.below && (model.facts.closed || !options.close.empty())) {
+    model.below = shape_below(document.shape, *options.below, options.close);
   }
   return model;
 }

@@ -86,6 +86,10 @@ void transfer(Io& io, Section& f) {
   io(f.normal, f.height, f.area, f.bound, f.centroid, f.centroid_bound, f.coplanar);
 }
 template <typename Io>
+void transfer(Io& io, PartBelow& f) {
+  io(f.normal, f.height, f.side, f.volume, f.bound, f.centroid, f.centroid_bound, f.proven);
+}
+template <typename Io>
 void transfer(Io& io, ShapeCounts& f) {
   io(f.solids, f.shells, f.faces);
 }
@@ -97,7 +101,7 @@ void transfer(Io& io, ImportAccount& f) {
 template <typename Io>
 void transfer(Io& io, SolidModel& f) {
   io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.open_edges,
-     f.moments, f.section, f.import, f.notices);
+     f.moments, f.section, f.below, f.import, f.notices);
 }
 template <typename Io>
 void transfer(Io& io, WriteReport& f) {

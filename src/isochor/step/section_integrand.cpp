@@ -33,17 +33,23 @@ const UnitRule& rule_of(int points) {
 }  // namespace
 
 void SectionSums::add(const SectionSums& other, double factor) {
-  for (size_t k = 0; k < 3; ++k) value[k] += other.value[k] * factor;
+  for (size_t k = 0; k < value.size(); ++k) value[k] += other.value[k] * factor;
   size += other.size * std::abs(factor);
   noise += other.noise * std::abs(factor);
+  lever = std::max(lever, other.lever);
 }
 
 double SectionSums::distance(const SectionSums& other) const {
-  return std::abs(static_cast<double>(value[0] - other.value[0]));
+  double farthest = std::abs(static_cast<double>(value[0] - other.value[0]));
+  // One lane may agree by chance.
+  for (size_t k = 1; lever > 0.0 && k < value.size(); ++k) {
+    farthest = std::max(farthest, std::abs(static_cast<double>(value[k] - other.value[k])) / lever);
+  }
+  return farthest;
 }
 
 void SectionSums::add_distances(const SectionSums& a, const SectionSums& b) {
-  for (size_t k = 0; k < 3; ++k) value[k] += std::abs(a.value[k] - b.value[k]);
+  for (size_t k = 0; k < value.size(); ++k) value[k] += std::abs(a.value[k] - b.value[k]);
 }
 
 // The surface along v = const: contracted once when it is a B-spline.
@@ -120,8 +126,9 @@ class SectionIntegrand::Line {
   std::vector<Eigen::Vector4d, Eigen::aligned_allocator<Eigen::Vector4d>> value_, slope_;
 };
 
-SectionIntegrand::SectionIntegrand(const Handle(Geom_Surface) & surface, double noise)
-    : surface_(surface), noise_(noise), breaks_(surface_breaks(surface)) {
+SectionIntegrand::SectionIntegrand(const Handle(Geom_Surface) & surface, double noise,
+                                   const std::optional<FrameField>& field)
+    : surface_(surface), noise_(noise), field_(field), breaks_(surface_breaks(surface)) {
   const GeomAdaptor_Surface adaptor(surface);
   bool polynomial = adaptor.GetType() == GeomAbs_Plane;
   u_degree_ = v_degree_ = 1;
@@ -130,7 +137,7 @@ SectionIntegrand::SectionIntegrand(const Handle(Geom_Surface) & surface, double 
     v_degree_ = adaptor.VDegree();
     polynomial = !adaptor.IsURational() && !adaptor.IsVRational();
   }
-  const int exact = (3 * u_degree_ + 1) / 2;
+  const int exact = field_ ? 2 * u_degree_ : (3 * u_degree_ + 1) / 2;
   points_ = polynomial ? exact : std::max(exact, kSmoothPoints);
   angular_u_ = u_degree_ <= 1 && adaptor.IsUPeriodic();
   if (surface->IsUPeriodic()) repeat_breaks(breaks_.u, surface->UPeriod());
@@ -206,6 +213,19 @@ std::vector<double> roots_of(const Line& line, double from, double to) {
   return roots;
 }
 
+// The field's lanes at a point. Heights are as noisy as the distance from the frame's origin is
+// long.
+void add_lanes(const FrameField& field, const Vec3& at, const Vec3& along_u, const Vec3& along_v,
+               double step, double sign, SectionSums& sums) {
+  const BelowLanes lanes = lanes_at(field, at, along_u.cross(along_v));
+  for (size_t k = 0; k < lanes.size(); ++k) sums.value[k] += sign * step * lanes[k];
+  sums.size += step * std::abs(lanes[0]);
+  sums.lever = field.lever;
+  const double reach = field.slope.norm() * at.norm();
+  sums.noise += step * field.direction.norm() * (std::abs(field.at(at)) + reach) * along_u.norm() *
+                along_v.norm();
+}
+
 // The parts of a smooth piece that lie below, each by one rule.
 void SectionIntegrand::add_piece(const Line& line, double from, double to, double sign,
                                  SectionSums& sums) const {
@@ -223,8 +243,12 @@ void SectionIntegrand::add_piece(const Line& line, double from, double to, doubl
     if (side == 0 && !(line.height(cuts[k] + 0.5 * length) < 0.0)) continue;
     for (size_t g = 0; g < rule.nodes.size(); ++g) {
       const LinePoint p = line.point(cuts[k] + length * rule.nodes[g]);
-      const double j = p.su.x() * p.sv.y() - p.sv.x() * p.su.y();
       const double step = length * rule.weights[g];
+      if (field_) {
+        add_lanes(*field_, p.s, p.su, p.sv, step, sign, sums);
+        continue;
+      }
+      const double j = p.su.x() * p.sv.y() - p.sv.x() * p.su.y();
       const double weight = sign * step * j;
       sums.value[0] += weight;
       sums.value[1] += weight * p.s.x();

@@ -1,10 +1,12 @@
-// The inner integrals of solid_section.h: what lies below the plane Z = 0 of a line v = const.
+// The inner integrals of solid_section.h and solid_below.h: what lies below the plane Z = 0 of a
+// line v = const.
 //
 // Symbols: (X, Y, Z) the coordinates of a surface that stands in the plane's frame, J = X_u Y_v -
 // X_v Y_u. Q(u, v) is the integral of f J over the part of the line from a fixed u = a to u where
-// Z < -noise, with f = 1, X, Y. Along a line Q is smooth between the roots of Z, which are searched
-// for between samples; along a curve in (u, v) it is smooth but where the curve passes the plane,
-// or where the section turns back. Contour cuts at the first and halves towards the second.
+// Z < -noise, with f = 1, X, Y; or, with a field, of the lanes of below_cells.h. Along a line Q is
+// smooth between the roots of Z, which are searched for between samples; along a curve in (u, v) it
+// is smooth but where the curve passes the plane, or where the section turns back. Contour cuts at
+// the first and halves towards the second.
 //
 // Internal to the step layer (OpenCASCADE types).
 #pragma once
@@ -17,13 +19,16 @@
 
 #include "isochor/bspline/surface.h"
 #include "isochor/step/trim_region.h"
+#include "isochor/volume/below_cells.h"
 
 namespace isochor::internal {
 
 struct SectionSums {
-  std::array<long double, 3> value{};  // of J, X J, Y J
-  long double size = 0.0;              // of |J|
-  long double noise = 0.0;             // of |S_u| |S_v|, which the rounding of J is relative to
+  std::array<long double, 4> value{};  // of J, X J, Y J, and nothing; or of the field's lanes
+  long double size = 0.0;              // of the first, absolutely
+  // Of |S_u| |S_v|, which the rounding of J is relative to; with a field, times |T| and its slips.
+  long double noise = 0.0;
+  double lever = 0.0;  // with a field: a length, to compare the other lanes by as well
 
   void add(const SectionSums& other, double factor);
   double distance(const SectionSums& other) const;
@@ -43,7 +48,8 @@ class SectionIntegrand {
   static constexpr bool kHasLevel = true;
 
   // Heights within `noise` of the plane count as above it.
-  SectionIntegrand(const Handle(Geom_Surface) & surface, double noise);
+  SectionIntegrand(const Handle(Geom_Surface) & surface, double noise,
+                   const std::optional<FrameField>& field = {});
 
   bool polynomial() const { return false; }  // no rule is exact across the plane
   bool plane() const { return false; }
@@ -67,6 +73,7 @@ class SectionIntegrand {
 
   Handle(Geom_Surface) surface_;
   double noise_;
+  std::optional<FrameField> field_;
   double start_ = 0.0;
   int u_degree_ = 0, v_degree_ = 0, points_ = 0;
   bool angular_u_ = false;

@@ -14,6 +14,7 @@
 #include "isochor/base/progress.h"
 #include "isochor/bspline/patch_model.h"
 #include "isochor/step/import_account.h"
+#include "isochor/volume/below.h"
 #include "isochor/volume/closing.h"
 #include "isochor/volume/moments.h"
 #include "isochor/volume/section.h"
@@ -86,6 +87,7 @@ struct SolidModel {
   std::vector<OpenEdge> open_edges;        // edges of one face only
   std::optional<MomentIntegrals> moments;  // when asked for and the shape is closed
   std::optional<Section> section;          // the same
+  std::optional<PartBelow> below;          // the same, or when planes close it
   ImportAccount import;
   std::vector<std::string> notices;  // repairs and warnings of the reader, in words
 };
@@ -100,6 +102,7 @@ struct ReadOptions {
   std::vector<int> convert;     // 0-based faces to turn into B-spline patches although they are not
   bool moments = false;         // also the moment integrals, which cost several times the volume
   std::vector<double> section;  // also the section by this plane, NX, NY, NZ, H; or empty
+  std::optional<ClosingPlane> below;  // also what lies below this plane
   // Planes that close the shape: fluxes, volume and moments are taken with a field that has no flux
   // through them. Whether they close it is for the caller to judge (open_edges).
   std::vector<ClosingPlane> close;

@@ -31,7 +31,6 @@ struct Below {
 void add_face(const TopoDS_Face& face, const gp_Trsf& to_frame, double noise, double distance,
               Below& below) {
   const Handle(Geom_Surface) placed = BRep_Tool::Surface(face);
-  // A motion: the parameters of the surface, and with them the loops, stay what they are.
   const auto surface = Handle(Geom_Surface)::DownCast(placed->Transformed(to_frame));
   SectionIntegrand integrand(surface, noise);
   below.coplanar = below.coplanar || integrand.coplanar();
@@ -50,42 +49,52 @@ void add_face(const TopoDS_Face& face, const gp_Trsf& to_frame, double noise, do
 
 }  // namespace
 
+std::optional<ShapeFrame> shape_frame(const TopoDS_Shape& shape, const Vec3& normal,
+                                      double height) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, Standard_False);
+  if (box.IsVoid()) return std::nullopt;
+  const gp_XYZ middle = 0.5 * box.CornerMin().XYZ() + 0.5 * box.CornerMax().XYZ();
+  ShapeFrame result;
+  result.diagonal = box.CornerMin().Distance(box.CornerMax());
+  Vec3 origin(middle.X(), middle.Y(), middle.Z());
+  origin += (height - normal.dot(origin)) * normal;
+  const Vec3 across = normal.unitOrthogonal();
+  result.frame.axes << across.transpose(), normal.cross(across).transpose(), normal.transpose();
+  result.frame.origin = origin;
+  result.to_frame.SetTransformation(
+      gp_Ax3(gp_Pnt(origin.x(), origin.y(), origin.z()), direction(normal), direction(across)));
+  result.noise = kHeightNoise * result.diagonal + 4 * kUnitRoundoff * origin.norm();
+  const Bnd_Box seen = box.Transformed(result.to_frame);
+  result.low = seen.CornerMin().Z();
+  result.high = seen.CornerMax().Z();
+  return result;
+}
+
 Section shape_section(const TopoDS_Shape& shape, const Vec3& normal, double height) {
   const double length = normal.norm();
   ISOCHOR_REQUIRE(length > 0.0 && std::isfinite(length) && std::isfinite(height), length, height);
   Section result;
   result.normal = normal / length;
   result.height = height / length;
-  Bnd_Box box;
-  BRepBndLib::Add(shape, box, Standard_False);
-  if (box.IsVoid()) return result;
-  const gp_XYZ middle = 0.5 * box.CornerMin().XYZ() + 0.5 * box.CornerMax().XYZ();
-  const double diagonal = box.CornerMin().Distance(box.CornerMax());
-  Vec3 origin(middle.X(), middle.Y(), middle.Z());
-  origin += (result.height - result.normal.dot(origin)) * result.normal;
-  const Vec3 across = result.normal.unitOrthogonal();
-  const gp_Ax3 frame(gp_Pnt(origin.x(), origin.y(), origin.z()), direction(result.normal),
-                     direction(across));
-  gp_Trsf to_frame;
-  to_frame.SetTransformation(frame);
-
-  const double noise = kHeightNoise * diagonal + 4 * kUnitRoundoff * origin.norm();
+  const std::optional<ShapeFrame> seen = shape_frame(shape, result.normal, result.height);
+  if (!seen) return result;
+  const double diagonal = seen->diagonal, noise = seen->noise;
   Below below;
   for (TopExp_Explorer it(shape, TopAbs_FACE); it.More(); it.Next()) {
-    add_face(TopoDS::Face(it.Current()), to_frame, noise, kSideDistance * diagonal, below);
+    add_face(TopoDS::Face(it.Current()), seen->to_frame, noise, kSideDistance * diagonal, below);
   }
   result.coplanar = below.coplanar;
   result.area = -below.value[0] + 0.0;
   // Heights are known up to the noise: a rim of that width around the section, which is about four
   // diagonals long.
   result.bound = below.error[0] + 4.0 * noise * diagonal;
-  result.centroid = origin;
+  result.centroid = seen->frame.origin;
   result.centroid_bound = std::numeric_limits<double>::infinity();
   const double least = std::abs(result.area) - result.bound;
   if (least > 0.0) {
     const double x = -below.value[1] / result.area, y = -below.value[2] / result.area;
-    const Vec3 second = result.normal.cross(across);
-    result.centroid += x * across + y * second;
+    result.centroid += seen->frame.axes.transpose() * Vec3(x, y, 0.0);
     result.centroid_bound = (below.error[1] + below.error[2] + 4.0 * diagonal * noise * diagonal +
                              std::hypot(x, y) * result.bound) /
                                 least +

@@ -18,13 +18,15 @@ using internal::CellLine;
 using internal::CompensatedSum;
 using internal::FluxLanes;
 using internal::Frame;
+using internal::gauss_rule;
+using internal::monotonic_in_u;
+using internal::weights_vary;
 
 constexpr int kMaxDivisions = 24;    // of a cell, in all; then it is undecided
 constexpr int kMaxHalvings = 24;     // of an interval of lines
 constexpr int kLinePoints = 10;      // lines per interval
 constexpr int kRationalPoints = 16;  // resolve a quotient whose weights are within a factor of two
 constexpr int kBudget = 100000;      // of divisions and halvings in all: seconds, not minutes
-constexpr double kWeightRatio = 2.0;
 constexpr double kNoise = 64 * kUnitRoundoff;  // of the sum of a rule, relative to its terms
 
 // Roundings of a coordinate from pole to Gauss point, for the degrees in use.
@@ -67,44 +69,10 @@ class Below {
   bool coplanar_ = false;
 };
 
-const GaussRule& rule_of(int points) {
-  static const auto rules = [] {
-    std::vector<GaussRule> made(1);
-    for (int n = 1; n <= kMaxGaussPoints; ++n) made.push_back(gauss_legendre(n));
-    return made;
-  }();
-  return rules[static_cast<size_t>(points)];
-}
-
 // Enough points for X J of this degree; more where there are weights.
 const GaussRule& rule_for(int degree, bool rational) {
   const int exact = (3 * degree + 1) / 2;
-  return rule_of(rational ? std::max(exact, kRationalPoints) : exact);
-}
-
-bool weights_vary(const BezierCell& cell) {
-  if (!cell.rational) return false;
-  double low = cell.at.front()[3];
-  double high = low;
-  for (const auto& pole : cell.at) {
-    low = std::min(low, pole[3]);
-    high = std::max(high, pole[3]);
-  }
-  return high > kWeightRatio * low;
-}
-
-// Whether w Z rises everywhere along u, or falls everywhere.
-bool monotonic_in_u(const BezierCell& cell) {
-  bool rises = true;
-  bool falls = true;
-  for (int i = 0; i < cell.u_degree; ++i) {
-    for (int j = 0; j <= cell.v_degree; ++j) {
-      const double step = cell(i + 1, j)[2] - cell(i, j)[2];
-      rises = rises && step > 0.0;
-      falls = falls && step < 0.0;
-    }
-  }
-  return rises || falls;
+  return gauss_rule(rational ? std::max(exact, kRationalPoints) : exact);
 }
 
 Place Below::place_of(const BezierCell& cell) {
@@ -158,7 +126,7 @@ void Below::add_undecided(const BezierCell& cell, double sign) {
 // Of the lines v = const between these two, the parts below.
 FluxLanes Below::lines(const BezierCell& cell, double from, double to) const {
   const GaussRule& rule = rule_for(cell.u_degree, cell.rational);
-  const GaussRule& across = rule_of(kLinePoints);
+  const GaussRule& across = gauss_rule(kLinePoints);
   FluxLanes sum;
   for (size_t g = 0; g < across.nodes.size(); ++g) {
     const CellLine line(cell, from + (to - from) * across.nodes[g]);
@@ -210,29 +178,6 @@ void Below::add_by_lines(const BezierCell& cell, double sign) {
   }
 }
 
-// Axes a, b, n with a x b = n, and the point of the plane nearest to the middle of the points.
-Frame frame_of(const std::vector<Vec3>& points, const Vec3& n, double height) {
-  Frame frame;
-  const Vec3 a = n.unitOrthogonal();
-  frame.axes << a.transpose(), n.cross(a).transpose(), n.transpose();
-  Vec3 low = points.front();
-  Vec3 high = low;
-  for (const Vec3& p : points) {
-    low = low.cwiseMin(p);
-    high = high.cwiseMax(p);
-  }
-  const Vec3 middle = 0.5 * low + 0.5 * high;
-  frame.origin = middle + (height - n.dot(middle)) * n;
-  return frame;
-}
-
-// The largest distance of a point from the plane's origin.
-double reach_of(const std::vector<Vec3>& points, const Frame& frame) {
-  double reach = 0.0;
-  for (const Vec3& p : points) reach = std::max(reach, (p - frame.origin).norm());
-  return reach;
-}
-
 }  // namespace
 
 Section section(const PatchModel& model, const Vec3& normal, double height) {
@@ -242,8 +187,8 @@ Section section(const PatchModel& model, const Vec3& normal, double height) {
   result.normal = normal / length;
   result.height = height / length;
   if (model.points.empty()) return result;
-  const Frame frame = frame_of(model.points, result.normal, result.height);
-  const double reach = reach_of(model.points, frame);
+  const Frame frame = internal::plane_frame(model.points, result.normal, result.height);
+  const double reach = internal::reach_of(model.points, frame);
   // A coordinate is rounded relative to the distance from the plane's origin, and to where that is.
   const double noise = kCoordinateNoise * reach + 4 * kUnitRoundoff * frame.origin.norm();
   Below below(noise, kUnitRoundoff * reach * reach);

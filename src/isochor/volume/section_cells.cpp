@@ -58,6 +58,60 @@ double lerp(double a, double b) { return 0.5 * (a + b); }
 
 }  // namespace
 
+Frame plane_frame(const std::vector<Vec3>& points, const Vec3& n, double height) {
+  Frame frame;
+  const Vec3 a = n.unitOrthogonal();
+  frame.axes << a.transpose(), n.cross(a).transpose(), n.transpose();
+  Vec3 low = points.front();
+  Vec3 high = low;
+  for (const Vec3& p : points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const Vec3 middle = 0.5 * low + 0.5 * high;
+  frame.origin = middle + (height - n.dot(middle)) * n;
+  return frame;
+}
+
+double reach_of(const std::vector<Vec3>& points, const Frame& frame) {
+  double reach = 0.0;
+  for (const Vec3& p : points) reach = std::max(reach, (p - frame.origin).norm());
+  return reach;
+}
+
+const GaussRule& gauss_rule(int points) {
+  static const auto rules = [] {
+    std::vector<GaussRule> made(1);
+    for (int n = 1; n <= kMaxGaussPoints; ++n) made.push_back(gauss_legendre(n));
+    return made;
+  }();
+  return rules[static_cast<size_t>(points)];
+}
+
+bool weights_vary(const BezierCell& cell) {
+  if (!cell.rational) return false;
+  double low = cell.at.front()[3];
+  double high = low;
+  for (const auto& pole : cell.at) {
+    low = std::min(low, pole[3]);
+    high = std::max(high, pole[3]);
+  }
+  return high > kWeightRatio * low;
+}
+
+bool monotonic_in_u(const BezierCell& cell) {
+  bool rises = true;
+  bool falls = true;
+  for (int i = 0; i < cell.u_degree; ++i) {
+    for (int j = 0; j <= cell.v_degree; ++j) {
+      const double step = cell(i + 1, j)[2] - cell(i, j)[2];
+      rises = rises && step > 0.0;
+      falls = falls && step < 0.0;
+    }
+  }
+  return rises || falls;
+}
+
 void FluxLanes::add(const FluxLanes& other, double factor) {
   for (size_t k = 0; k < 3; ++k) {
     value[k] += factor * other.value[k];
@@ -170,30 +224,31 @@ double CellLine::root() const {
   return u;
 }
 
+CellPoint CellLine::point(double u) const {
+  const Row b = bernstein(degree_, u);
+  const Row slopes = bernstein_slopes(degree_, u);
+  Vec4 s = Vec4::Zero();
+  Vec4 su = Vec4::Zero();
+  Vec4 sv = Vec4::Zero();
+  for (size_t i = 0; i < value_.size(); ++i) {
+    s += b[i] * value_[i];
+    su += slopes[i] * value_[i];
+    sv += b[i] * slope_[i];
+  }
+  const Vec3 at = s.head<3>() / s[3];
+  return {at, (su.head<3>() - su[3] * at) / s[3], (sv.head<3>() - sv[3] * at) / s[3]};
+}
+
 FluxLanes CellLine::integral(double from, double to, const GaussRule& rule) const {
   FluxLanes sum;
   for (size_t g = 0; g < rule.nodes.size(); ++g) {
-    const double u = from + (to - from) * rule.nodes[g];
-    const Row b = bernstein(degree_, u);
-    const Row slopes = bernstein_slopes(degree_, u);
-    Vec4 s = Vec4::Zero();
-    Vec4 su = Vec4::Zero();
-    Vec4 sv = Vec4::Zero();
-    for (size_t i = 0; i < value_.size(); ++i) {
-      s += b[i] * value_[i];
-      su += slopes[i] * value_[i];
-      sv += b[i] * slope_[i];
-    }
-    const double x = s[0] / s[3];
-    const double y = s[1] / s[3];
-    const double xu = (su[0] - su[3] * x) / s[3];
-    const double yu = (su[1] - su[3] * y) / s[3];
-    const double xv = (sv[0] - sv[3] * x) / s[3];
-    const double yv = (sv[1] - sv[3] * y) / s[3];
+    const CellPoint p = point(from + (to - from) * rule.nodes[g]);
+    const double forward = p.along_u.x() * p.along_v.y();
+    const double back = p.along_v.x() * p.along_u.y();
     const double weight = (to - from) * rule.weights[g];
-    const double flux = weight * (xu * yv - xv * yu);
-    const double size = std::abs(weight) * (std::abs(xu * yv) + std::abs(xv * yu));
-    const std::array<double, 3> f = {1.0, x, y};
+    const double flux = weight * (forward - back);
+    const double size = std::abs(weight) * (std::abs(forward) + std::abs(back));
+    const std::array<double, 3> f = {1.0, p.at.x(), p.at.y()};
     for (size_t k = 0; k < 3; ++k) {
       sum.value[k] += f[k] * flux;
       sum.size[k] += std::abs(f[k]) * size;

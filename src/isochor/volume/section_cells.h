@@ -1,4 +1,4 @@
-// Bezier cells for section.h.
+// Bezier cells for section.h and below.h.
 #pragma once
 
 #include <array>
@@ -32,9 +32,24 @@ struct Frame {
   Vec3 origin;           // a point of the plane
 };
 
+// Axes a, b, n with a x b = n, and the point of the plane n.x = height nearest to the middle of the
+// points.
+Frame plane_frame(const std::vector<Vec3>& points, const Vec3& n, double height);
+// The largest distance of a point from the frame's origin.
+double reach_of(const std::vector<Vec3>& points, const Frame& frame);
+
 // All elements of a patch as cells.
 std::vector<BezierCell> cells_of(const Patch& patch, const std::vector<Vec3>& points,
                                  const Frame& frame);
+
+// The rule with this many points; tables are made once.
+const GaussRule& gauss_rule(int points);
+
+// The largest weight is within this factor of the smallest in cells that one rule integrates.
+inline constexpr double kWeightRatio = 2.0;
+bool weights_vary(const BezierCell& cell);
+// Whether w Z rises everywhere along u, or falls everywhere.
+bool monotonic_in_u(const BezierCell& cell);
 
 // Integrals of J, X J and Y J, and of their absolute values.
 struct FluxLanes {
@@ -42,10 +57,16 @@ struct FluxLanes {
   void add(const FluxLanes& other, double factor);
 };
 
+// A point of a cell and its derivatives.
+struct CellPoint {
+  Vec3 at, along_u, along_v;
+};
+
 // A cell at one v: a Bezier curve in u with its derivative along v.
 class CellLine {
  public:
   CellLine(const BezierCell& cell, double v);
+  CellPoint point(double u) const;
   // w Z at u.
   double height(double u) const;
   // The one root of w Z in [0, 1]; its values at 0 and 1 have different signs.
