@@ -58,6 +58,8 @@ Value to_value(const std::vector<Finding>& findings) {
                   .set("kind", f.kind)
                   .set("severity", name_of(f.severity))
                   .set("place", f.place)
+                  .set("entity", f.entity.empty() ? Value() : Value(f.entity))
+                  .set("face_entities", f.face_entities)
                   .set("at", f.at ? Value(*f.at) : Value())
                   .set("value", f.value ? Value(*f.value) : Value())
                   .set("limit", f.limit ? Value(*f.limit) : Value())
@@ -145,6 +147,7 @@ int run_check(const CheckOptions& options, const Common& common) {
   if (!options.picture.empty()) require_picture(options.picture);
   ShapeMeasures measures;
   measures.close = parse_close(options.close);
+  measures.entities = true;
   const LoadedModel loaded = load_model(options.model, common, {}, measures);
   std::optional<LoadedModel> original;
   if (!options.against.empty()) original = load_model(options.against, common, {}, measures);

@@ -46,6 +46,7 @@ struct ShapeMeasures {
   std::vector<double> section;      // NX, NY, NZ, H, or empty
   std::vector<ClosingPlane> close;  // planes that close the model
   std::optional<ClosingPlane> below = {};
+  bool entities = false;  // the numbers of edges in STEP files
 };
 
 // The planes that --close names. InputError for what is no plane.

@@ -7,6 +7,7 @@ import base64
 import json
 import math
 import pathlib
+import re
 import shutil
 import struct
 import subprocess
@@ -393,6 +394,24 @@ class Check(Scenario):
         self.assertIn("--close", check["opening"])
         self.assertEqual(sum(row["edges"] for row in check["edges_by_angle"]), 8)
         self.expect(3, "check", CUBE, "--picture", "check.jpg", says="png")
+
+    def test_findings_name_entities_of_a_step_file(self):
+        text = HULL.read_text()
+        shell = re.search(r"=CLOSED_SHELL\('[^']*',\((#\d+(?:,#\d+)*)\)\)", text)
+        faces = shell[1].split(",")
+        (WORK / "lost.step").write_text(text.replace(shell[1], ",".join(faces[:-1])))
+        check = self.run_json("check", "lost.step", code=1)
+        free = [f for f in check["findings"] if f["kind"] == "free edge"]
+        self.assertGreater(len(free), 1)
+        for finding in free:
+            self.assertRegex(text, finding["entity"] + r"\s*=\s*EDGE_CURVE\(")
+            self.assertEqual(len(finding["face_entities"]), 1)
+            self.assertIn(finding["face_entities"][0], faces[:-1])
+            self.assertIn(f"[{finding['entity']}; face {finding['face_entities'][0]}]", finding["text"])
+        self.assertEqual(len({f["entity"] for f in free}), len(free))
+        self.assertIn(f"[{free[0]['entity']}; face", isochor("check", "lost.step").stdout)
+        for finding in self.run_json("check", self.open_cube(), code=1)["findings"]:
+            self.assertEqual((finding["entity"], finding["face_entities"]), (None, []), "no STEP file")
 
     def test_volume_below_a_plane(self):
         below = self.run_json("volume", CUBE, "--below", "z=0.25")["below"]

@@ -54,6 +54,31 @@ TEST(Findings, FreeEdgesAreFaultsUnlessPlanesCloseThem) {
   EXPECT_TRUE(findings_of(model).empty());
 }
 
+TEST(Findings, NameEntitiesOfTheFile) {
+  CheckedModel model = sound_cube();
+  model.closed = false;
+  model.defects = {"face:2: edge: invalid curve on surface", "face:20: not there"};
+  model.faces[0].entity = "#10";
+  model.faces[1].entity = "#11";
+  model.edges[3].uses = 1;
+  model.edges[3].entity = "#77";
+  model.edges[3].faces = {0, 1};
+  model.edges[4].uses = 1;
+  model.edges[4].faces = {1, 2};
+  const auto found = findings_of(model);
+  const auto free = of_kind(found, "free edge");
+  ASSERT_EQ(free.size(), 2u);
+  EXPECT_EQ(free[0].entity, "#77");
+  EXPECT_EQ(free[0].face_entities, (std::vector<std::string>{"#10", "#11"}));
+  EXPECT_NE(free[0].text.find(" [#77; faces #10, #11]"), std::string::npos) << free[0].text;
+  EXPECT_NE(free[1].text.find(" [face #11]"), std::string::npos) << "the other has no number";
+  const auto invalid = of_kind(found, "invalid");
+  ASSERT_EQ(invalid.size(), 2u);
+  EXPECT_EQ(invalid[0].entity, "#11");
+  EXPECT_EQ(invalid[1].entity, "") << invalid[1].text;
+  EXPECT_EQ(invalid[1].text, "face:20: not there");
+}
+
 TEST(Findings, ValuesAreBeyondTheirLimits) {
   CheckedModel model = sound_cube();
   model.volume = -1.0;
@@ -66,7 +91,7 @@ TEST(Findings, ValuesAreBeyondTheirLimits) {
   model.edges[3].angle_deg = 2.0;
   model.edges[4].uses = 3;
   model.edges[5].angle_deg = 179.0;
-  model.faces[1] = {"face:2", 1e-7, 1.0, 1e-6};
+  model.faces[1] = {"face:2", 1e-7, 1.0, 1e-6, ""};
   const auto found = findings_of(model);
   for (const char* kind : {"invalid", "orientation", "gap", "tiny edge", "tiny face",
                            "large tolerance", "almost smooth", "multiple edge", "fold"}) {

@@ -16,6 +16,7 @@
 #include "isochor/step/child_progress.h"
 #include "isochor/step/conversion.h"
 #include "isochor/step/edge_measures.h"
+#include "isochor/step/entity_index.h"
 #include "isochor/step/flux.h"
 #include "isochor/step/shape_facts.h"
 #include "isochor/step/solid_below.h"
@@ -110,6 +111,12 @@ void note_faces_without_area(SolidModel& model, double diagonal) {
   }
 }
 
+// The entities of the file that became the edges.
+void number_edges(const Document& document, const BrepTable& table, std::vector<EdgeFacts>& edges) {
+  const EntityIndex index(document);
+  for (size_t e = 0; e < edges.size(); ++e) edges[e].entity = index.number(table.edges[e].edge);
+}
+
 // Edges of one face only, with points along them.
 std::vector<OpenEdge> open_edges(const BrepTable& table, const std::vector<EdgeFacts>& facts) {
   std::vector<OpenEdge> edges;
@@ -160,6 +167,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   cut_iso_boxes(table);
   tell_progress(0.3, "looking at edges");
   for (const EdgeRecord& edge : table.edges) model.edges.push_back(measure_edge(table, edge));
+  if (options.entities) number_edges(document, table, model.edges);
   model.patches = patch_model(table, model.edges);
   model.patches.unit = model.unit;
   const auto aliases = face_aliases(document);

@@ -65,7 +65,7 @@ void transfer(Io& io, FaceFacts& f) {
 template <typename Io>
 void transfer(Io& io, EdgeFacts& f) {
   io(f.faces, f.degenerated, f.length, f.tolerance, f.max_gap, f.max_angle_rad, f.smoothness,
-     f.points);
+     f.points, f.entity);
 }
 template <typename Io>
 void transfer(Io& io, ShapeFacts& f) {

@@ -7,6 +7,14 @@ std::string label_of(const FaceFacts& face) {
   return face.handle + (face.name.empty() ? "" : " (\"" + face.name + "\")");
 }
 
+// The face's number in a STEP file; empty when there is none.
+std::string entity_of(const FaceFacts& face) {
+  for (const std::string& alias : face.aliases) {
+    if (alias.rfind('#', 0) == 0) return alias;
+  }
+  return "";
+}
+
 std::string label_of(const SolidModel& solid, const EdgeFacts& edge) {
   std::string text;
   for (size_t k = 0; k < edge.faces.size(); ++k) {
@@ -32,7 +40,7 @@ CheckedModel checked(const SolidModel& solid, bool closed, const std::string& wh
   model.volume_bound = solid.facts.volume_bound;
   model.diagonal = solid.facts.diagonal;
   for (const FaceFacts& face : solid.faces) {
-    model.faces.push_back({label_of(face), face.area, 0.0, face.tolerance});
+    model.faces.push_back({label_of(face), face.area, 0.0, face.tolerance, entity_of(face)});
   }
   for (const EdgeFacts& facts : solid.edges) {
     if (facts.degenerated) continue;
@@ -46,6 +54,9 @@ CheckedModel checked(const SolidModel& solid, bool closed, const std::string& wh
     edge.tolerance = facts.tolerance;
     edge.angle_deg = facts.max_angle_rad * kDegreesPerRadian;
     edge.smoothness = facts.smoothness;
+    if (facts.entity != 0) edge.entity = "#" + std::to_string(facts.entity);
+    edge.faces = facts.faces;
+    if (edge.faces.size() == 2 && edge.faces[0] == edge.faces[1]) edge.faces.pop_back();  // a seam
     for (int face : facts.faces) model.faces[static_cast<size_t>(face)].perimeter += facts.length;
     model.edges.push_back(std::move(edge));
   }

@@ -43,17 +43,13 @@ class Collector {
 
   std::vector<Finding> take() {
     for (const std::string& defect : model_.defects) {
-      add({"invalid",
-           Severity::kFault,
-           defect.substr(0, defect.find(": ")),
-           {},
-           {},
-           {},
-           defect,
-           -1});
+      const std::string place = defect.substr(0, defect.find(": "));
+      Finding finding{"invalid", Severity::kFault, place, {}, {}, {}, {}, -1, entity_of(place), {}};
+      finding.text = defect + numbers_of(finding);
+      add(std::move(finding));
     }
     for (const std::string& fault : model_.import_faults) {
-      add({"import", Severity::kFault, "", {}, {}, {}, fault, -1});
+      add({"import", Severity::kFault, "", {}, {}, {}, fault, -1, "", {}});
     }
     for (size_t e = 0; e < model_.edges.size(); ++e) judge_edge(static_cast<int>(e));
     for (const CheckedFace& face : model_.faces) judge_face(face);
@@ -70,6 +66,21 @@ class Collector {
   static double excess(const Finding& f) {
     return f.value && f.limit && *f.limit > 0.0 ? *f.value / *f.limit : 0.0;
   }
+  // " [#12; faces #3, #4]", for the text.
+  static std::string numbers_of(const Finding& f) {
+    std::string faces;
+    for (const std::string& entity : f.face_entities) faces += (faces.empty() ? "" : ", ") + entity;
+    if (!faces.empty()) faces = (f.face_entities.size() == 1 ? "face " : "faces ") + faces;
+    if (f.entity.empty() && faces.empty()) return "";
+    return " [" + f.entity + (f.entity.empty() || faces.empty() ? "" : "; ") + faces + "]";
+  }
+  // The number of the face that a place like "face:2" names.
+  std::string entity_of(const std::string& place) const {
+    for (const CheckedFace& face : model_.faces) {
+      if (face.label == place || face.label.rfind(place + " ", 0) == 0) return face.entity;
+    }
+    return "";
+  }
   void add(Finding finding) { found_.push_back(std::move(finding)); }
 
   void add_at_edge(int e, const char* kind, Severity severity, std::optional<double> value,
@@ -79,7 +90,13 @@ class Collector {
     std::ostringstream where;
     where.precision(4);
     if (at) where << " at (" << at->transpose() << ")";
-    add({kind, severity, edge.label, at, value, limit, edge.label + where.str() + " " + text, e});
+    Finding finding{kind, severity, edge.label, at, value, limit, {}, e, edge.entity, {}};
+    for (int face : edge.faces) {
+      const std::string& entity = model_.faces[static_cast<size_t>(face)].entity;
+      if (!entity.empty()) finding.face_entities.push_back(entity);
+    }
+    finding.text = edge.label + where.str() + " " + text + numbers_of(finding);
+    add(std::move(finding));
   }
 
   void judge_edge(int e) {
@@ -120,22 +137,18 @@ class Collector {
     const double limit =
         kTinyTolerances * std::max(face.tolerance, kUnitRoundoff * model_.diagonal);
     if (width > limit) return;
-    add({"tiny face",
-         Severity::kWarning,
-         face.label,
-         {},
-         limit,
-         width,
-         face.label + " is " + print(width) + " " + model_.unit + " wide, its tolerance is " +
-             print(face.tolerance),
-         -1});
+    Finding finding{"tiny face", Severity::kWarning, face.label, {}, limit, width, {},
+                    -1,          face.entity,        {}};
+    finding.text = face.label + " is " + print(width) + " " + model_.unit +
+                   " wide, its tolerance is " + print(face.tolerance) + numbers_of(finding);
+    add(std::move(finding));
   }
 
   void judge_whole() {
     const bool shown = std::any_of(model_.edges.begin(), model_.edges.end(),
                                    [](const CheckedEdge& edge) { return edge.uses != 2; });
     if (!model_.closed && !shown) {  // else the edges say so
-      add({"open", Severity::kFault, "", {}, {}, {}, "open: " + model_.why_open, -1});
+      add({"open", Severity::kFault, "", {}, {}, {}, "open: " + model_.why_open, -1, "", {}});
     }
     if (model_.closed && model_.volume < 0.0) {
       add({"orientation",
@@ -145,7 +158,9 @@ class Collector {
            {},
            {},
            "oriented inwards: the volume is negative",
-           -1});
+           -1,
+           "",
+           {}});
     }
     if (model_.closed && !(model_.volume_bound < std::abs(model_.volume))) {
       add({"volume",
@@ -156,7 +171,9 @@ class Collector {
            std::abs(model_.volume),
            "the volume is not determined: " + print(model_.volume) + ", error at most " +
                print(model_.volume_bound),
-           -1});
+           -1,
+           "",
+           {}});
     }
     double largest = 0.0;
     int at = -1;
@@ -231,7 +248,8 @@ CheckedModel checked(const PatchModel& model) {
     edge.uses = 1;
     result.edges.push_back(std::move(edge));
   }
-  for (const Patch& patch : model.patches) result.faces.push_back({label_of(patch), 0.0, 0.0, 0.0});
+  for (const Patch& patch : model.patches)
+    result.faces.push_back({label_of(patch), 0.0, 0.0, 0.0, ""});
   return result;
 }
 

@@ -29,11 +29,14 @@ struct CheckedEdge {
   double length = 0.0, gap = 0.0, tolerance = 0.0;
   double angle_deg = 0.0;  // largest between the normals along it
   Smoothness smoothness = Smoothness::kSharp;
+  std::string entity;      // "#123", its number in a STEP file; may be empty
+  std::vector<int> faces;  // indices into CheckedModel::faces; may be empty
 };
 
 struct CheckedFace {
   std::string label;  // "face:3 (\"top\")"
   double area = 0.0, perimeter = 0.0, tolerance = 0.0;
+  std::string entity;  // as for edges
 };
 
 struct CheckedModel {
@@ -67,6 +70,9 @@ struct Finding {
   std::optional<double> value, limit;  // what was measured, and what it should not pass
   std::string text;                    // one line for people
   int edge = -1;                       // index into CheckedModel::edges
+  // Numbers in the STEP file, "#123": of the edge or face itself, and of the faces of an edge.
+  std::string entity;
+  std::vector<std::string> face_entities;
 };
 
 // Faults first, then by how far values are beyond their limits.
