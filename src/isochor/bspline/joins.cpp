@@ -9,6 +9,7 @@
 
 #include "isochor/base/tolerance.h"
 #include "isochor/bspline/refinement.h"
+#include "isochor/bspline/surface_derivatives.h"
 
 namespace isochor {
 namespace {
@@ -31,18 +32,19 @@ const Patch& patch_of(const PatchModel& model, const SideRef& ref) {
 class SideCurve {
  public:
   SideCurve(const Surface& surface, Side side, double sign)
-      : surface_(surface), side_(side), sign_(sign) {
+      : surface_(surface), side_(side), sign_(sign), breaks_(knots().breaks()) {
     const KnotVector& across = knots_of(surface, across_direction(side));
-    fixed_ = is_begin_side(side) ? across.begin() : across.end();
-    fixed_limit_ = is_begin_side(side) ? Limit::kFromAbove : Limit::kFromBelow;
+    fixed_ = is_begin_side(side) ? internal::basis_at(across, across.begin(), 2, Limit::kFromAbove)
+                                 : internal::basis_at(across, across.end(), 2, Limit::kFromBelow);
   }
 
   const KnotVector& knots() const { return knots_of(surface_, running_direction(side_)); }
   double length() const { return knots().end() - knots().begin(); }
 
   SurfaceDerivatives at(double t, int order, Limit limit) const {
-    return is_u_side(side_) ? surface_.derivatives(fixed_, t, order, fixed_limit_, limit)
-                            : surface_.derivatives(t, fixed_, order, limit, fixed_limit_);
+    const BasisValues running = internal::basis_at(knots(), t, order, limit);
+    return is_u_side(side_) ? internal::derivatives_from(surface_, fixed_, running, order)
+                            : internal::derivatives_from(surface_, running, fixed_, order);
   }
   Vec3 point(double t) const { return at(t, 0, Limit::kFromAbove).s; }
   Vec3 tangent(const SurfaceDerivatives& d) const { return is_u_side(side_) ? d.sv : d.su; }
@@ -59,7 +61,7 @@ class SideCurve {
 
   // The knot that is within rounding of t, so that one-sided limits pick the intended span; else t.
   double on_knot(double t) const {
-    for (double knot : knots().breaks()) {
+    for (double knot : breaks_) {
       if (std::abs(t - knot) <= kSameSide * length()) return knot;
     }
     return t;
@@ -69,8 +71,8 @@ class SideCurve {
   const Surface& surface_;
   Side side_;
   double sign_;
-  double fixed_ = 0.0;
-  Limit fixed_limit_ = Limit::kFromAbove;
+  std::vector<double> breaks_;
+  BasisValues fixed_;  // across the side
 };
 
 // Finds the parameter of a curve's point nearest to a given one: samples, then descent inside the

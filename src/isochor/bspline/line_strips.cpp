@@ -97,22 +97,24 @@ struct Derivatives {
 
 Derivatives derivatives_at(const PatchModel& model, const Strip& strip, int j, double scale) {
   const Patch& patch = patch_of(model, strip.patch);
-  std::vector<Vec3> poles;
-  std::vector<double> weights;
+  std::array<Vec3, kMaxDegree + 1> poles;
+  poles[0].setZero();
+  std::array<double, kMaxDegree + 1> weights;
   Vec3 sum = Vec3::Zero();
   double total = 0.0;
-  for (int i = 0; i < rows_of(strip); ++i) {
-    const auto at = grid_index(patch, strip, strip.first + i, j);
-    poles.push_back(model.points[static_cast<size_t>(patch.point(at.first, at.second))]);
-    weights.push_back(weight_at(patch, at) * scale);
-    const double share = strip.rounded(0)[static_cast<size_t>(i)] * weights.back();
-    sum += share * (poles.back() - poles.front());
+  const auto rows = static_cast<size_t>(rows_of(strip));
+  for (size_t i = 0; i < rows; ++i) {
+    const auto at = grid_index(patch, strip, strip.first + static_cast<int>(i), j);
+    poles[i] = model.points[static_cast<size_t>(patch.point(at.first, at.second))];
+    weights[i] = weight_at(patch, at) * scale;
+    const double share = strip.rounded(0)[i] * weights[i];
+    sum += share * (poles[i] - poles[0]);
     total += share;
   }
-  const Vec3 point = poles.front() + sum / total;
+  const Vec3 point = poles[0] + sum / total;
   Derivatives result;
   for (int r = 0; r < 2; ++r) {
-    for (size_t i = 0; i < poles.size(); ++i) {
+    for (size_t i = 0; i < rows; ++i) {
       const Vec3 term = strip.rounded(r + 1)[i] * weights[i] * (poles[i] - point);
       result.value[r] += term;
       result.size[r] += term.norm();
@@ -271,10 +273,12 @@ struct Balanced {
 Balanced balanced_equation(const PatchModel& model, const Line& line, int r, int j,
                            const Rational& lambda, const Rational& mu) {
   EquationTerms terms(line);
-  std::vector<Rational> weights[2];
-  Rational own[2];
+  std::vector<Rational> weights[2];  // none: all are one
+  Rational own[2] = {Rational(1), Rational(1)};
   for (size_t s = 0; s < 2; ++s) {
     const Strip& strip = line.strips[s];
+    if (patch_of(model, strip.patch).weights.empty()) continue;
+    own[s] = Rational();
     for (int i = 0; i < rows_of(strip); ++i) {
       weights[s].emplace_back(weight(model, strip, i, j));
       own[s] += strip.derivative(0)[static_cast<size_t>(i)] * weights[s].back();
@@ -285,8 +289,11 @@ Balanced balanced_equation(const PatchModel& model, const Line& line, int r, int
   Rational size;
   const auto add = [&](size_t s, int order, const Rational& factor) {
     const Strip& strip = line.strips[s];
-    for (size_t i = 0; i < weights[s].size(); ++i) {
-      const Rational value = factor * strip.derivative(order)[i] * weights[s][i];
+    const std::vector<Rational>& shares = strip.derivative(order);
+    for (size_t i = 0; i < shares.size(); ++i) {
+      if (shares[i].is_zero()) continue;
+      Rational value = factor * shares[i];
+      if (!weights[s].empty()) value *= weights[s][i];
       terms.add(static_cast<int>(s), strip.first + static_cast<int>(i), value);
       sum += value;
       size += value.abs();

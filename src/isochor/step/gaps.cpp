@@ -44,6 +44,21 @@ struct SpaceCurve {
   }
 };
 
+bool same_numbers(const Geom_BSplineCurve& a, const Geom_BSplineCurve& b) {
+  if (a.Degree() != b.Degree() || a.NbPoles() != b.NbPoles() || a.NbKnots() != b.NbKnots()) {
+    return false;
+  }
+  if (a.IsPeriodic() || b.IsPeriodic() || a.IsRational() || b.IsRational()) return false;
+  for (int k = 1; k <= a.NbKnots(); ++k) {
+    if (a.Knot(k) != b.Knot(k) || a.Multiplicity(k) != b.Multiplicity(k)) return false;
+  }
+  for (int k = 1; k <= a.NbPoles(); ++k) {
+    const gp_Pnt p = a.Pole(k), q = b.Pole(k);
+    if (p.X() != q.X() || p.Y() != q.Y() || p.Z() != q.Z()) return false;
+  }
+  return true;
+}
+
 // The curve of an edge on a face.
 class FaceCurve {
  public:
@@ -59,6 +74,17 @@ class FaceCurve {
     const gp_Pnt2d uv = values_.Value(first_ + fraction * (last_ - first_));
     if (runs_ == Runs::kAnyhow) return surface_->Value(uv.X(), uv.Y());
     return line_.Value(runs_ == Runs::kAlongU ? uv.X() : uv.Y());
+  }
+  // Proves that the composed curve is that of the edge, by numbers and at equal parameters: then
+  // there is no gap.
+  bool is(const SpaceCurve& space) const {
+    if (runs_ == Runs::kAnyhow || space.first != first_ || space.last != last_) return false;
+    const auto line = Handle(Geom2d_Line)::DownCast(curve_);
+    const bool along_u = runs_ == Runs::kAlongU;
+    const double origin = along_u ? line->Location().X() : line->Location().Y();
+    const double speed = along_u ? line->Direction().X() : line->Direction().Y();
+    const auto own = Handle(Geom_BSplineCurve)::DownCast(space.curve);
+    return origin == 0.0 && speed == 1.0 && !own.IsNull() && same_numbers(*own, *line_.BSpline());
   }
   // Of the composed curve: knots of a direction in which it does not run are not met.
   int spans() const {
@@ -113,6 +139,7 @@ double distance(const TopoDS_Vertex& vertex, const gp_Pnt& point) {
 }
 
 double gap_between(const SpaceCurve& space, const FaceCurve& on_face, const Ends& ends) {
+  if (space.known() && on_face.is(space)) return 0.0;
   const int samples = sample_count(space, on_face);
   double largest = 0.0;
   for (int k = 0; k <= samples; ++k) {
