@@ -41,27 +41,30 @@ constexpr int kMostRounds = 60;
 constexpr double kLeastSeconds = 3.0;
 constexpr int kVolumeRounds = 20;
 
-double children_cpu_seconds() {
-  rusage usage{};
-  getrusage(RUSAGE_CHILDREN, &usage);
-  const auto value = [](const timeval& t) {
-    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
-  };
-  return value(usage.ru_utime) + value(usage.ru_stime);
+// Processor time, user and system, of this process and of the children that ended.
+double cpu_seconds() {
+  double total = 0.0;
+  for (const auto who : {RUSAGE_CHILDREN, RUSAGE_SELF}) {
+    rusage usage{};
+    getrusage(who, &usage);
+    for (const timeval& t : {usage.ru_utime, usage.ru_stime}) {
+      total += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    }
+  }
+  return total;
 }
 
-// The least processor time, user and system, of the child processes that each of `works` starts:
-// each reads as if for the first time.
-std::vector<double> best_child_seconds(const std::vector<std::function<void()>>& works) {
+// The least processor time of each of `works`, which read in a child process, as if for the first
+// time. What this process does to start it and to take its result counts, too.
+std::vector<double> best_cpu_seconds_of(const std::vector<std::function<void()>>& works) {
   std::vector<double> best(works.size(), std::numeric_limits<double>::infinity());
-  const double start = children_cpu_seconds();
-  for (int k = 0;
-       k < kLeastRounds || (k < kMostRounds && children_cpu_seconds() - start < kLeastSeconds);
+  const double start = cpu_seconds();
+  for (int k = 0; k < kLeastRounds || (k < kMostRounds && cpu_seconds() - start < kLeastSeconds);
        ++k) {
     for (size_t w = 0; w < works.size(); ++w) {
-      const double begin = children_cpu_seconds();
+      const double begin = cpu_seconds();
       works[w]();
-      best[w] = std::min(best[w], children_cpu_seconds() - begin);
+      best[w] = std::min(best[w], cpu_seconds() - begin);
     }
   }
   return best;
@@ -104,7 +107,7 @@ void print_import_row(const std::string& path) {
       });
     };
   };
-  const std::vector<double> best = best_child_seconds(
+  const std::vector<double> best = best_cpu_seconds_of(
       {in_child(read_with_occt), in_child([](const std::string& of) {
          new internal::Document(internal::load_document(of));  // ends with the child
        }),

@@ -126,6 +126,17 @@ TEST(Bytes, SolidModelsKeepEveryField) {
   EXPECT_EQ(back.notices, model.notices);
 }
 
+TEST(Bytes, RationalsKeepTheirValue) {
+  for (const char* text : {"0", "-3/2", "0.1", "9223372036854775807/2", "9223372036854775808/3",
+                           "-7/9223372036854775809", "1e40"}) {
+    const Rational value = Rational::parse(text);
+    EXPECT_EQ(there_and_back(value), value) << text;
+  }
+  internal::ByteWriter damaged;
+  damaged(true, 1L, 0L);
+  EXPECT_THROW(from_bytes<Rational>(damaged.take()), BytesError);
+}
+
 TEST(Bytes, EveryTruncationIsRefused) {
   const std::string bytes = to_bytes(example_model());
   for (size_t size = 0; size < bytes.size(); size += 7) {

@@ -89,9 +89,14 @@ struct Bytes<T, std::enable_if_t<std::is_arithmetic_v<T> || std::is_enum_v<T>>> 
 
 template <typename T>
 struct Bytes<std::vector<T>> {
+  // Nothing but numbers, without gaps between them.
+  static constexpr bool kPlain =
+      std::is_same_v<T, double> || std::is_same_v<T, int> || std::is_same_v<T, Vec3>;
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+
   static void write(ByteWriter& out, const std::vector<T>& values) {
     out(static_cast<std::uint64_t>(values.size()));
-    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, int>) {
+    if constexpr (kPlain) {
       out.raw(values.data(), values.size() * sizeof(T));
     } else {
       for (const auto& value : values) Bytes<T>::write(out, value);
@@ -103,7 +108,7 @@ struct Bytes<std::vector<T>> {
     // Every element takes at least one byte: a damaged length must not allocate without bound.
     if (size > in.left()) throw BytesError("the bytes of a result end too early");
     std::vector<T> values;
-    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, int>) {
+    if constexpr (kPlain) {
       if (size * sizeof(T) > in.left()) throw BytesError("the bytes of a result end too early");
       values.resize(size);
       in.raw(values.data(), size * sizeof(T));
@@ -131,10 +136,30 @@ struct Bytes<std::string> {
   }
 };
 
+// Two numbers where they fit, else decimal digits.
 template <>
 struct Bytes<Rational> {
-  static void write(ByteWriter& out, const Rational& value) { out(value.to_string()); }
-  static Rational read(ByteReader& in) { return Rational::parse(Bytes<std::string>::read(in)); }
+  static void write(ByteWriter& out, const Rational& value) {
+    const std::optional<long> above = value.numerator().to_long();
+    const std::optional<long> below = value.denominator().to_long();
+    const bool fits = above && below;
+    out(fits);
+    if (fits) {
+      out(*above, *below);
+    } else {
+      out(value.to_string());
+    }
+  }
+  static Rational read(ByteReader& in) {
+    bool fits = false;
+    in(fits);
+    if (!fits) return Rational::parse(Bytes<std::string>::read(in));
+    long above = 0;
+    long below = 0;
+    in(above, below);
+    if (below <= 0) throw BytesError("a denominator is not positive");
+    return below == 1 ? Rational(above) : Rational(Integer(above), Integer(below));
+  }
 };
 
 template <typename T, size_t N>
