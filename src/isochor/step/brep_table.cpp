@@ -55,6 +55,7 @@ BrepTable brep_table(const TopoDS_Shape& shape, const TopTools_IndexedMapOfShape
   }
   std::map<const void*, int> places;
   for (int k = 1; k <= faces.Extent(); ++k) ++places[faces(k).TShape().get()];
+  table.faces.reserve(static_cast<size_t>(faces.Extent()));
   for (int k = 1; k <= faces.Extent(); ++k) {
     FaceRecord record;
     record.face = TopoDS::Face(faces(k));

@@ -10,6 +10,7 @@
 #include <StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx.hxx>
 #include <StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext.hxx>
 #include <StepRepr_GlobalUnitAssignedContext.hxx>
+#include <unordered_map>
 
 namespace isochor::internal {
 namespace {
@@ -25,6 +26,15 @@ Context context_of(const Handle(Standard_Transient) & entity) {
   const auto half =
       Handle(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext)::DownCast(entity);
   return half.IsNull() ? Context() : half->GlobalUnitAssignedContext();
+}
+
+// Asked once for each type: models have many entities of few types.
+bool may_have_context(const Handle(Standard_Type) & type) {
+  return type->SubType(STANDARD_TYPE(StepRepr_GlobalUnitAssignedContext)) ||
+         type->SubType(
+             STANDARD_TYPE(StepGeom_GeomRepContextAndGlobUnitAssCtxAndGlobUncertaintyAssCtx)) ||
+         type->SubType(
+             STANDARD_TYPE(StepGeom_GeometricRepresentationContextAndGlobalUnitAssignedContext));
 }
 
 // Zero when the unit is not a length. A conversion names another unit; damaged files may make a
@@ -48,8 +58,14 @@ double millimetres_of(const Handle(Standard_Transient) & unit, int depth = 0) {
 LengthUnit step_unit(const StepData_StepModel& model, std::vector<std::string>& notices) {
   LengthUnit found;
   bool mixed = false;
+  std::unordered_map<const Standard_Type*, bool> may_have;
   for (int k = 1; k <= model.NbEntities(); ++k) {
-    const Context context = context_of(model.Value(k));
+    const Handle(Standard_Transient) entity = model.Value(k);
+    const Handle(Standard_Type)& type = entity->DynamicType();
+    const auto [known, fresh] = may_have.try_emplace(type.get(), false);
+    if (fresh) known->second = may_have_context(type);
+    if (!known->second) continue;
+    const Context context = context_of(entity);
     if (context.IsNull() || context->Units().IsNull()) continue;
     for (int j = 1; j <= context->NbUnits(); ++j) {
       const double millimetres = millimetres_of(context->UnitsValue(j));
