@@ -35,12 +35,20 @@ std::vector<std::string> named_patches(const EditScript& script) {
         names.insert(hold.place.patch);
       }
     }
+    names.insert(edit.follow.faces.begin(), edit.follow.faces.end());
     add_extent(edit.extent);
     if (edit.sink.kind == Sink::Kind::kOtherExtent) add_extent(edit.sink.extent);
     for (const auto& item : edit.scale.knots) names.insert(item.first);
   }
   names.erase("");
   return {names.begin(), names.end()};
+}
+
+// How far faces may part at trimming curves that the script moves; 0: it moves none.
+double largest_follow_tolerance(const EditScript& script) {
+  double largest = 0.0;
+  for (const Edit& edit : script.edits) largest = std::max(largest, edit.follow.tolerance);
+  return largest;
 }
 
 EditScript read_script(const std::string& path) {
@@ -78,6 +86,11 @@ void print_certificate(const Certificate& c, const std::string& unit, const Comm
     print(common,
           format("  moved            %s by (%.6g, %.6g, %.6g), error %.2g %s", move.place.c_str(),
                  move.got.x(), move.got.y(), move.got.z(), move.error, unit.c_str()));
+  }
+  for (const FollowRecord& follower : c.followers) {
+    print(common, format("  followed         %s within %.2g %s, refined from %d to %d poles",
+                         follower.patch.c_str(), follower.deviation, unit.c_str(),
+                         follower.poles_before, follower.poles_after));
   }
   if (c.joins.count > 0) {
     print(common, format("  largest gap      %.3g %s at %d joins", c.joins.max_gap, unit.c_str(),
@@ -165,6 +178,8 @@ int run_edit(const EditOptions& options, const Common& common) {
   const std::vector<std::string> named = named_patches(script);
   ShapeMeasures measures;
   measures.close = planes_for(options, script);
+  const double trim_tolerance = largest_follow_tolerance(script);
+  measures.shared_trims = trim_tolerance > 0.0;
   const LoadedModel loaded =
       load_model(options.model, common,
                  is_cad_file(options.model) ? named : std::vector<std::string>(), measures);
@@ -186,7 +201,8 @@ int run_edit(const EditOptions& options, const Common& common) {
     if (!options.picture.empty() || !options.html.empty()) {
       account.png = encode_png(draw_edit(loaded, session, certificates, common));
     }
-    WrittenModel written = write_edited_model(loaded, session, options.output, common);
+    WrittenModel written =
+        write_edited_model(loaded, session, options.output, trim_tolerance, common);
     account.extra.insert(account.extra.end(), written.report.begin(), written.report.end());
     account.lines = std::move(written.lines);
     if (!closing_text(loaded).empty()) account.lines.push_back("volumes: " + closing_text(loaded));

@@ -27,20 +27,12 @@ Value facts_value(const ShapeFacts& facts) {
 }
 
 WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
-                         const std::string& output, const Common& common) {
-  const SolidModel& solid = *before.solid;
-  std::vector<EditedFace> faces;
-  for (size_t q = 0; q < session.moved_patches().size(); ++q) {
-    if (!session.moved_patches()[q]) continue;
-    for (size_t f = 0; f < solid.faces.size(); ++f) {
-      if (solid.faces[f].patch != static_cast<int>(q)) continue;
-      faces.push_back({static_cast<int>(f), session.model().surface(static_cast<int>(q))});
-    }
-  }
+                         const std::string& output, double trim_tolerance, const Common& common) {
+  const auto faces = edited_faces(*before.solid, session.model(), session.moved_patches());
   BusyLine busy(common, "writing and checking " + output);
   ReadOptions options = read_options(common, busy);
   options.convert = before.converted;
-  const WriteReport report = write_edited(before.path, options, faces, output);
+  const WriteReport report = write_edited(before.path, options, faces, output, trim_tolerance);
   WrittenModel result;
   result.written = report.written;
   result.refusal = report.refusal;
@@ -85,15 +77,17 @@ WrittenModel write_solid(const LoadedModel& before, const EditSession& session,
 }  // namespace
 
 WrittenModel write_edited_model(const LoadedModel& before, const EditSession& session,
-                                const std::string& output, const Common& common) {
+                                const std::string& output, double trim_tolerance,
+                                const Common& common) {
   WrittenModel result;
   const bool json = extension_of(output) == "isochor.json";
 #ifdef ISOCHOR_WITH_OCCT
   if (before.solid && is_cad_file(output)) {
-    return write_solid(before, session, output, common);
+    return write_solid(before, session, output, trim_tolerance, common);
   }
 #else
   (void)common;
+  (void)trim_tolerance;
 #endif
   if (json) {
     write_file(output, format_model(session.model()));

@@ -19,8 +19,10 @@ struct WrittenModel {
 };
 
 // Writes the session's model to `output`, complete or not at all.
+// `trim_tolerance`: how far faces may part at trimming curves that have moved; 0: none has.
 // Throws InputError when the file cannot be written.
 WrittenModel write_edited_model(const LoadedModel& before, const EditSession& session,
-                                const std::string& output, const Common& common);
+                                const std::string& output, double trim_tolerance,
+                                const Common& common);
 
 }  // namespace isochor::app

@@ -1,6 +1,7 @@
 #include "model_source.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "busy_line.h"
 #include "isochor/base/error.h"
@@ -143,6 +144,17 @@ ReadOptions read_options(const Common& common, BusyLine& busy) {
   return options;
 }
 
+std::vector<EditedFace> edited_faces(const SolidModel& solid, const PatchModel& model,
+                                     const std::vector<bool>& moved) {
+  std::vector<EditedFace> faces;
+  for (size_t f = 0; f < solid.faces.size(); ++f) {
+    const int patch = solid.faces[f].patch;
+    if (patch < 0 || !moved[static_cast<size_t>(patch)]) continue;
+    faces.push_back({static_cast<int>(f), model.surface(patch)});
+  }
+  return faces;
+}
+
 int find_face(const SolidModel& solid, const std::string& name) {
   std::vector<int> found;
   for (size_t f = 0; f < solid.faces.size(); ++f) {
@@ -182,6 +194,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
   BusyLine busy(common, "reading " + path);
   ReadOptions options = read_options(common, busy);
   options.moments = measures.moments;
+  options.shared_trims = measures.shared_trims;
   options.section = measures.section;
   options.close = measures.close;
   options.below = measures.below;
@@ -204,6 +217,22 @@ SolidModel read_converted(const std::string& path, const Common& common,
   return solid;
 }
 
+// Measures the solid of the file with other patches, in a child process.
+std::function<MeasuredVolume(const PatchModel&, const std::vector<bool>&, double)> measurer(
+    const LoadedModel& loaded, const Common& common) {
+  const auto faces = std::make_shared<SolidModel>();
+  faces->faces = loaded.solid->faces;
+  return [faces, path = loaded.path, converted = loaded.converted, common](
+             const PatchModel& model, const std::vector<bool>& moved, double tolerance) {
+    BusyLine busy(common, "measuring the edited solid");
+    ReadOptions options = read_options(common, busy);
+    options.convert = converted;
+    const EditedFacts edited =
+        measure_edited(path, options, edited_faces(*faces, model, moved), tolerance);
+    return MeasuredVolume{{edited.facts.volume, edited.facts.volume_bound}, edited.refusal};
+  };
+}
+
 }  // namespace
 
 #endif
@@ -220,7 +249,9 @@ LoadedModel load_model(const std::string& path, const Common& common,
   std::vector<int> converted;
   SolidModel solid = read_converted(path, common, convert, measures, converted);
   for (const std::string& notice : solid.notices) detail(common, path + ": " + notice);
-  return from_solid(std::move(solid), std::move(converted), measures.close);
+  LoadedModel loaded = from_solid(std::move(solid), std::move(converted), measures.close);
+  if (measures.shared_trims) loaded.surroundings.measure = measurer(loaded, common);
+  return loaded;
 #else
   (void)common;
   (void)convert;

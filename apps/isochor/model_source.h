@@ -46,7 +46,8 @@ struct ShapeMeasures {
   std::vector<double> section;      // NX, NY, NZ, H, or empty
   std::vector<ClosingPlane> close;  // planes that close the model
   std::optional<ClosingPlane> below = {};
-  bool entities = false;  // the numbers of edges in STEP files
+  bool entities = false;      // the numbers of edges in STEP files
+  bool shared_trims = false;  // for edits that move trimming curves
 };
 
 // The planes that --close names. InputError for what is no plane.
@@ -65,6 +66,9 @@ LoadedModel load_model(const std::string& path, const Common& common,
 #ifdef ISOCHOR_WITH_OCCT
 // Limits as the user set them; progress to `busy`, which must outlive the reading.
 ReadOptions read_options(const Common& common, BusyLine& busy);
+// New geometry for the faces whose patches have moved.
+std::vector<EditedFace> edited_faces(const SolidModel& solid, const PatchModel& model,
+                                     const std::vector<bool>& moved);
 // 0-based index of the face called `name`. Throws InputError (unknown, ambiguous).
 int find_face(const SolidModel& solid, const std::string& name);
 #endif

@@ -157,6 +157,38 @@ TEST(Trims, ATrimAlongAKnotLineSeparatesElements) {
   }
 }
 
+TEST(Trims, ReleasedBoxesLockNothingButOthersStillDo) {
+  Patch patch = patch_with(KnotVector::uniform(3, 16), KnotVector::uniform(3, 16));
+  patch.trim = circle_trim({0.3, 0.3}, 0.11, 80, patch, true);
+  const TrimRegion other = circle_trim({0.75, 0.75}, 0.11, 80, patch, false);
+  patch.trim.boundary.insert(patch.trim.boundary.end(), other.boundary.begin(),
+                             other.boundary.end());
+  patch.trim.loops.push_back(other.loops.front());
+  const auto locked = trim_states(patch, classify_elements(patch));
+  const auto states = trim_states(patch, classify_elements(patch, {{0, 80}}));
+  int freed = 0;
+  for (int i = 0; i < patch.u_size(); ++i) {
+    for (int j = 0; j < patch.v_size(); ++j) {
+      const size_t k = static_cast<size_t>(i) * patch.v_size() + j;
+      bool meets_first = false, meets_other = false;
+      for (size_t b = 0; b < patch.trim.boundary.size(); ++b) {
+        const UvBox& box = patch.trim.boundary[b];
+        const double value =
+            basis_at(patch, i, j, {0.5 * (box.u_min + box.u_max), 0.5 * (box.v_min + box.v_max)});
+        (b < 80 ? meets_first : meets_other) |= value > 0.0;
+      }
+      if (meets_other) {
+        EXPECT_EQ(states[k], TrimState::kNearTrim) << i << " " << j;
+      }
+      if (meets_first && !meets_other && states[k] == TrimState::kFree) ++freed;
+      if (locked[k] == TrimState::kFree) {
+        EXPECT_EQ(states[k], TrimState::kFree);
+      }
+    }
+  }
+  EXPECT_GT(freed, 20);
+}
+
 TEST(Trims, RefinementOnlyWidensTheFreeRegion) {
   std::mt19937 random(62);
   Patch coarse = patch_with(KnotVector::uniform(3, 7), KnotVector::uniform(3, 7));

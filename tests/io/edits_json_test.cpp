@@ -93,6 +93,20 @@ TEST(EditsJson, RefineIsAWordOrANumber) {
               HasSubstr("edits[0].refine: expected \"auto\", found \"fine\""));
 }
 
+TEST(EditsJson, FollowersAreNamedWithATolerance) {
+  const EditScript script = parse_edits(
+      script_of(R"("follow": {"faces": ["canopy", "face:7"], "tolerance": 1e-5})"), "e.json");
+  const Follow& follow = script.edits[0].follow;
+  EXPECT_EQ(follow.faces, (std::vector<std::string>{"canopy", "face:7"}));
+  EXPECT_EQ(follow.tolerance, 1e-5);
+  EXPECT_EQ(parse_edits(format_edits(script), "f.json").edits[0].follow.faces, follow.faces);
+  EXPECT_THAT(error_of(script_of(R"("follow": {"faces": ["canopy"]})")), HasSubstr("tolerance"));
+  EXPECT_THAT(error_of(script_of(R"("follow": {"faces": [], "tolerance": 1e-5})")),
+              HasSubstr("edits[0].follow.faces: the list is empty"));
+  EXPECT_THAT(error_of(script_of(R"("follow": {"faces": ["a"], "tolerance": -1})")),
+              HasSubstr("edits[0].follow.tolerance"));
+}
+
 TEST(EditsJson, MistakesNameThePlaceAndTheValue) {
   EXPECT_THAT(error_of(script_of(R"("exent": {"rings": 3})")),
               HasSubstr("e.json: edits[0]: unknown key \"exent\""));

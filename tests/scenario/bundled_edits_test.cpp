@@ -138,5 +138,96 @@ TEST(FuselageWindowEdit, ReachesTheWindowWithoutMovingItsEdges) {
   }
 }
 
+// The volume of a model whose trimming curves have moved, by another integral than the edit's.
+double volume_by_moments(const SolidModel& model) {
+  return moments_from(*model.moments).volume.value;
+}
+
+// The followers of the canopy model: one trimmed along the curve as well, one closed whose side the
+// curve is, with its seam at the curve's only vertex.
+struct FollowCase {
+  const char* name;
+  const char* edits;
+  int follower;    // patch and face
+  int other;       // patch that stays
+  Uv on_skin;      // a place of the curve that moves
+  Uv on_follower;  // the same on the follower
+};
+class MovingTrims : public ::testing::TestWithParam<FollowCase> {};
+
+TEST_P(MovingTrims, MoveWithBothFacesAndKeepTheVolume) {
+  const FollowCase& c = GetParam();
+  const std::string input = kData + "step/canopy.step";
+  const std::string script = kData + "edits/" + c.edits;
+  const Edit edit = parse_edits(testing::read_text(script), script).edits.at(0);
+  ReadOptions options;
+  options.shared_trims = options.moments = true;
+  const SolidModel before = read_solid(input, options);
+  ASSERT_EQ(before.patches.shared_trims.size(), 4u);
+  const int face = std::string(c.name) == "Mast" ? 6 : 1;
+  const auto faces_of = [&](const PatchModel& model) {
+    return std::vector<EditedFace>{{0, model.surface(0)}, {face, model.surface(c.follower)}};
+  };
+  Surroundings surroundings;
+  surroundings.outside_volume =
+      before.facts.volume - VolumeForm(before.patches).value(before.patches.points);
+  surroundings.measure = [&](const PatchModel& model, const std::vector<bool>&, double tolerance) {
+    const EditedFacts edited = measure_edited(input, {}, faces_of(model), tolerance);
+    return MeasuredVolume{{edited.facts.volume, edited.facts.volume_bound}, edited.refusal};
+  };
+  EditSession session(before.patches, surroundings);
+  const Certificate certificate = session.apply(edit);
+  ASSERT_EQ(certificate.outcome, Outcome::kDone) << certificate.reason;
+  EXPECT_TRUE(certificate.volume.kept);
+
+  const fs::path output =
+      fs::temp_directory_path() / ("isochor-canopy-" + std::to_string(getpid()) + ".step");
+  const WriteReport report =
+      write_edited(input, {}, faces_of(session.model()), output.string(), edit.follow.tolerance);
+  ASSERT_TRUE(report.written) << report.refusal;
+  EXPECT_EQ(report.written_by, "line by line");
+  const SolidModel after = read_solid(output.string(), options);
+  const WriteReport refused = write_edited(input, {}, faces_of(session.model()), output.string());
+  fs::remove(output);
+  EXPECT_FALSE(refused.written) << "trimming curves only move when the user says how far";
+  EXPECT_NE(refused.refusal.find("moves an edge that is trimmed out of it"), std::string::npos)
+      << refused.refusal;
+
+  EXPECT_TRUE(after.facts.valid && after.facts.closed);
+  EXPECT_NEAR(after.facts.volume, before.facts.volume, kVolumeKept * before.facts.volume);
+  EXPECT_NEAR(volume_by_moments(after), volume_by_moments(before),
+              1e-9 * before.facts.volume + edit.follow.tolerance);
+  // The gap, measured at other places than the fit: both faces of the file at equal fractions.
+  double gap = 0.0;
+  ASSERT_EQ(after.patches.shared_trims.size(), 4u);
+  for (const SharedTrim& now : after.patches.shared_trims) {
+    for (size_t k = 0; k < now.along[0].size(); ++k) {
+      const auto point = [k](const PatchModel& model, const SharedTrim& trim, size_t side) {
+        const Uv& uv = trim.along[side][k];
+        return Vec3(model.surface(trim.patches[side]).point(uv.u, uv.v));
+      };
+      gap = std::max(gap, (point(after.patches, now, 0) - point(after.patches, now, 1)).norm());
+    }
+  }
+  EXPECT_LE(gap, edit.follow.tolerance);
+  EXPECT_LE(report.reread.max_edge_gap, edit.follow.tolerance);
+  const auto displacement = [&](int q, const Uv& uv) {
+    return Vec3(after.patches.surface(q).point(uv.u, uv.v) -
+                before.patches.surface(q).point(uv.u, uv.v));
+  };
+  EXPECT_GT(displacement(0, c.on_skin).norm(), 0.02);
+  EXPECT_GT(displacement(c.follower, c.on_follower).norm(), 0.02);
+  EXPECT_EQ(after.patches.surface(c.other).poles(), before.patches.surface(c.other).poles());
+  for (const SmoothRelation& relation : after.patches.relations) {
+    EXPECT_LE(relation.residual, 1e-9) << relation.text;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Canopy, MovingTrims,
+    ::testing::Values(FollowCase{"Canopy", "canopy_pull.json", 1, 2, {0.0, 0.5}, {0.0, 0.5}},
+                      FollowCase{"Mast", "canopy_mast.json", 2, 1, {-3.0, 0.25}, {1.0, 0.0}}),
+    [](const auto& instance) { return std::string(instance.param.name); });
+
 }  // namespace
 }  // namespace isochor

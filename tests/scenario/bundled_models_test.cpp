@@ -89,7 +89,7 @@ TEST(BundledModels, AreWhatTheirGeneratorWrites) {
     EXPECT_TRUE(read_text(entry.path().string()) == read_text(kFolder + name)) << name;
     ++files;
   }
-  EXPECT_EQ(files, 9);
+  EXPECT_EQ(files, 10);
   fs::remove_all(folder);
 }
 
@@ -132,6 +132,41 @@ TEST(BundledModels, HaveTheSameVolumeByQuadratureAlongAnotherAxis) {
     }
     EXPECT_NEAR(volume, exact_volume(file).to_double(), 1e-13 * volume) << file;
   }
+}
+
+// Two graphs over x and y: the block under the skin, and what the canopy adds between the parabolas
+// where they meet.
+TEST(BundledModels, CanopyHasTheDocumentedVolume) {
+  const Entities entities = entities_of("canopy.step");
+  const auto numbers = entities_named(entities, "B_SPLINE_SURFACE_WITH_KNOTS");
+  ASSERT_EQ(numbers.size(), 4u);
+  const Surface skin = step_surface(entities, numbers[0]);
+  const Surface canopy = step_surface(entities, numbers[1]);
+  PatchModel block = surfaces_of(entities, false);
+  block.patches.erase(block.patches.begin() + 1, block.patches.end());
+  const double under_skin = VolumeForm(block).value(block.points) + 8.0 * 3.0;  // floor z = -1
+  // Simpson's rule is exact in y (degree 2); in x the integrand has degree 6.
+  double added = 0.0;
+  constexpr int kSteps = 4000;
+  for (int k = 0; k <= 2 * kSteps; ++k) {
+    const double x = -2.0 + 4.0 * k / (2 * kSteps), half = (4.0 - x * x) / 8.0;
+    const auto height = [&](double y) {
+      const Vec3 above = canopy.point(x, y), below = skin.point(x, y);
+      EXPECT_NEAR(above.x(), below.x(), 1e-14);
+      EXPECT_NEAR(above.y(), below.y(), 1e-14);
+      return above.z() - below.z();
+    };
+    EXPECT_NEAR(height(half), 0.0, 1e-14);
+    EXPECT_NEAR(height(-half), 0.0, 1e-14);
+    const double weight = k % 2 == 1 ? 4.0 : k == 0 || k == 2 * kSteps ? 1.0 : 2.0;
+    added += weight * height(0.0) * half * 4.0 / 3.0;
+  }
+  added *= 4.0 / kSteps / 6.0;
+  EXPECT_NEAR(added, 64.0 / 105.0, 1e-11);
+  // The mast: the area of its curve times its height. Each parabola cuts off two thirds of its
+  // triangle beyond the square of the arcs' ends.
+  const double mast = 0.75 * (10.0 / 3.0) * 0.25 * 0.25;
+  EXPECT_NEAR(under_skin + added + mast, documented_volume("canopy.step").to_double(), 1e-11);
 }
 
 TEST(BundledModels, CubeJsonHasThePointsOfTheStepFile) {

@@ -110,6 +110,9 @@ INSTANTIATE_TEST_SUITE_P(
                       Expected{
                           "patchwork.step",
                           {"top left", "top right", "bottom", "front", "back", "left", "right"}},
+                      Expected{"canopy.step",
+                               {"skin", "canopy", "port", "aft", "starboard", "fore", "mast",
+                                "mast cover", "floor"}},
                       Expected{"cube.step", {"top", "bottom", "front", "back", "left", "right"}}),
     [](const auto& instance) {
       const std::string file = instance.param.file;

@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
     write(folder + "hull.step", make_data::hull_step());
     write(folder + "cube.step", make_data::cube_step());
     write(folder + "patchwork.step", make_data::patchwork_step());
+    write(folder + "canopy.step", make_data::canopy_step());
     write(folder + "cube.isochor.json", make_data::cube_json());
     write(folder + "cylinder.isochor.json", make_data::cylinder_json());
     write(folder + "torus.isochor.json", make_data::torus_json());

@@ -30,6 +30,11 @@ std::string cube_json();
 // "top right", which the front and the back meet along one side each (T-junctions).
 std::string patchwork_step();
 
+// A block with a curved top, a canopy and a mast on it. The canopy meets the top in two trimming
+// curves, parabolas in the parameter planes of both; the mast's foot is a side of the mast and a
+// trim of the top.
+std::string canopy_step();
+
 // Rational bodies of revolution around the z axis, of whole patches: a wall (cubic along the axis,
 // quadratic around it) between two disks; a torus, cubic both ways; a spindle with a blunt nose and
 // a blunt tail, quadratic both ways. Their knot lines are smooth by their poles only.

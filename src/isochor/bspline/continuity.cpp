@@ -121,7 +121,8 @@ class Covered {
 void lock_trim(const PatchModel& model, int q, LockCollector* locks) {
   const Patch& patch = model.patches[static_cast<size_t>(q)];
   if (patch.trim.empty()) return;
-  const std::vector<TrimState> states = trim_states(patch, classify_elements(patch));
+  const std::vector<TrimState> states =
+      trim_states(patch, classify_elements(patch, released_boxes(model, q)));
   for (size_t k = 0; k < states.size(); ++k) {
     if (states[k] == TrimState::kFree) continue;
     const bool off = states[k] == TrimState::kTrimmedOff;
@@ -281,8 +282,13 @@ void lock_all(PatchModel& model, std::vector<SmoothRelation> relations,
     lock_knot_lines(model, q, lines, covered, &locks);
     lock_poles(model, q, surface, size, classes, covered, &locks);
   }
-  for (const LockedSide& side : model.locked_sides) lock_side(model, side, &locks);
-  for (const auto& [point, reason] : model.fixed_points) {
+  for (size_t k = 0; k < model.locked_sides.size(); ++k) {
+    if (side_is_released(model, static_cast<int>(k))) continue;
+    lock_side(model, model.locked_sides[k], &locks);
+  }
+  for (size_t k = 0; k < model.fixed_points.size(); ++k) {
+    if (corner_is_released(model, static_cast<int>(k))) continue;
+    const auto& [point, reason] = model.fixed_points[k];
     locks.lock(point, locks.reason(reason, false));
   }
   for (int k = 0; k < static_cast<int>(model.joins.size()); ++k) {

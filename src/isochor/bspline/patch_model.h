@@ -135,6 +135,20 @@ struct LockedSide {
   SidePart part = {};                          // where; the rest of the side stays free
 };
 
+// An edge between two patches that is a trimming curve of one of them or of both. Either locks what
+// shapes it, unless the trim is released for that patch: then an edit may move it, and must make
+// the other patch follow (edit/follow.h). Readers fill these when asked.
+struct SharedTrim {
+  std::array<int, 2> patches{};              // not the same
+  std::array<std::vector<Uv>, 2> along;      // pairs of places of one point of the edge
+  std::array<std::pair<int, int>, 2> boxes;  // of trim.boundary of each, [first, second)
+  std::array<int, 2> locked_sides{-1, -1};   // where it runs along a side: index, or -1
+  std::vector<int> corners;                  // indices of the fixed points at its ends, where no
+                                             // other patch ends
+  Smoothness smoothness = Smoothness::kSharp;
+  std::array<bool, 2> released{};
+};
+
 // A point that must not move (all axes), and why, in words a designer understands.
 struct Lock {
   int point = 0;
@@ -157,6 +171,7 @@ struct PatchModel {
   std::vector<LockedSide> locked_sides;
   // Points that the reader knows must not move, with the reason; derived locks come on top.
   std::vector<std::pair<int, std::string>> fixed_points;
+  std::vector<SharedTrim> shared_trims;
   std::vector<LockReason> lock_reasons;
   std::vector<Lock> locks;
   // Smoothness that displacements keep by equations instead; derive_locks fills them.

@@ -71,7 +71,7 @@ class BlockCount {
 
 }  // namespace
 
-ElementGrid classify_elements(const Patch& patch) {
+ElementGrid classify_elements(const Patch& patch, const BoxRanges& released) {
   const std::vector<double> u = patch.u_knots.breaks();
   const std::vector<double> v = patch.v_knots.breaks();
   ElementGrid grid;
@@ -93,11 +93,16 @@ ElementGrid classify_elements(const Patch& patch) {
       }
     }
   }
-  for (const UvBox& box : patch.trim.boundary) {
+  for (size_t k = 0; k < patch.trim.boundary.size(); ++k) {
+    const UvBox& box = patch.trim.boundary[k];
+    const bool may_move = contains(released, static_cast<int>(k));
     const auto [u_first, u_last] = elements_met(u, box.u_min, box.u_max);
     const auto [v_first, v_last] = elements_met(v, box.v_min, box.v_max);
     for (int a = u_first; a < u_last; ++a) {
-      for (int b = v_first; b < v_last; ++b) kind(a, b) = ElementKind::kCrossed;
+      for (int b = v_first; b < v_last; ++b) {
+        if (!may_move) kind(a, b) = ElementKind::kCrossed;
+        if (kind(a, b) != ElementKind::kCrossed) kind(a, b) = ElementKind::kReleased;
+      }
     }
   }
   return grid;
@@ -108,6 +113,8 @@ std::vector<TrimState> trim_states(const Patch& patch, const ElementGrid& elemen
   const std::vector<double> v = patch.v_knots.breaks();
   BlockCount inside(elements, ElementKind::kInside);
   BlockCount outside(elements, ElementKind::kOutside);
+  BlockCount crossed(elements, ElementKind::kCrossed);
+  BlockCount released(elements, ElementKind::kReleased);
   std::vector<TrimState> states;
   states.reserve(patch.points.size());
   for (int i = 0; i < patch.u_size(); ++i) {
@@ -115,12 +122,46 @@ std::vector<TrimState> trim_states(const Patch& patch, const ElementGrid& elemen
     for (int j = 0; j < patch.v_size(); ++j) {
       const auto in_v = support(patch.v_knots, v, j);
       const int all = (in_u.second - in_u.first) * (in_v.second - in_v.first);
-      states.push_back(inside.in(in_u, in_v) == all    ? TrimState::kFree
+      const bool only_released = released.in(in_u, in_v) > 0 && crossed.in(in_u, in_v) == 0;
+      const bool free = only_released || inside.in(in_u, in_v) == all;
+      states.push_back(free                            ? TrimState::kFree
                        : outside.in(in_u, in_v) == all ? TrimState::kTrimmedOff
                                                        : TrimState::kNearTrim);
     }
   }
   return states;
+}
+
+bool contains(const BoxRanges& ranges, int box) {
+  return std::any_of(ranges.begin(), ranges.end(),
+                     [&](const auto& range) { return range.first <= box && box < range.second; });
+}
+
+BoxRanges released_boxes(const PatchModel& model, int q) {
+  BoxRanges ranges;
+  for (const SharedTrim& trim : model.shared_trims) {
+    for (size_t k = 0; k < 2; ++k) {
+      if (trim.released[k] && trim.patches[k] == q) ranges.push_back(trim.boxes[k]);
+    }
+  }
+  return ranges;
+}
+
+bool side_is_released(const PatchModel& model, int locked_side) {
+  return std::any_of(model.shared_trims.begin(), model.shared_trims.end(),
+                     [&](const SharedTrim& trim) {
+                       return (trim.released[0] && trim.locked_sides[0] == locked_side) ||
+                              (trim.released[1] && trim.locked_sides[1] == locked_side);
+                     });
+}
+
+bool corner_is_released(const PatchModel& model, int fixed_point) {
+  return std::any_of(
+      model.shared_trims.begin(), model.shared_trims.end(), [&](const SharedTrim& trim) {
+        const auto& corners = trim.corners;
+        return (trim.released[0] || trim.released[1]) &&
+               std::find(corners.begin(), corners.end(), fixed_point) != corners.end();
+      });
 }
 
 bool inside_trim(const TrimRegion& trim, double u, double v) {

@@ -45,6 +45,14 @@ struct LockRecord {
   int coefficients = 0;
 };
 
+// The face of an edit that followed another one across a trimming curve.
+struct FollowRecord {
+  std::string patch;
+  double deviation = 0.0;  // from the face it follows, largest of many places along the curve
+  double max_distance = 0.0;
+  int poles_before = 0, poles_after = 0;  // refined until the deviation was small enough
+};
+
 // One edit, done or not.
 struct Certificate {
   std::string name;
@@ -56,6 +64,8 @@ struct Certificate {
   VolumeRecord volume;
   std::vector<MoveRecord> moves;
   std::vector<MoveRecord> holds;
+  std::vector<FollowRecord> followers;
+  double volume_of_followers = 0.0;  // change of volume by what moved with the trims, made up for
   JoinRecord joins;
   SkinRecord skin;
   int rows = 0, rank = 0, freedom_left = 0;

@@ -12,6 +12,7 @@
 #include "isochor/bspline/continuity.h"
 #include "isochor/bspline/model_refinement.h"
 #include "isochor/bspline/refinement.h"
+#include "isochor/bspline/trims.h"
 #include "isochor/edit/names.h"
 #include "isochor/edit/places.h"
 
@@ -69,9 +70,14 @@ std::array<double, 2> largest_speeds(const Surface& surface) {
 // The parameters that must stay where they are: boxes around trimming curves, and locked sides.
 std::vector<UvBox> obstacles(const PatchModel& model, int q) {
   const Patch& patch = model.patches[static_cast<size_t>(q)];
-  std::vector<UvBox> boxes = patch.trim.boundary;
-  for (const LockedSide& locked : model.locked_sides) {
-    if (locked.side.patch != q) continue;
+  const BoxRanges released = released_boxes(model, q);
+  std::vector<UvBox> boxes;
+  for (size_t k = 0; k < patch.trim.boundary.size(); ++k) {
+    if (!contains(released, static_cast<int>(k))) boxes.push_back(patch.trim.boundary[k]);
+  }
+  for (size_t k = 0; k < model.locked_sides.size(); ++k) {
+    const LockedSide& locked = model.locked_sides[k];
+    if (locked.side.patch != q || side_is_released(model, static_cast<int>(k))) continue;
     UvBox box{patch.u_knots.begin(), patch.u_knots.end(), patch.v_knots.begin(),
               patch.v_knots.end()};
     const Side side = locked.side.side;

@@ -113,6 +113,14 @@ struct EdgeContinuity {
   Continuity keep = Continuity::kMeasured;
 };
 
+// Faces that follow where the edit moves a trimming curve that they share with other faces: they
+// are refined and refitted along it.
+struct Follow {
+  std::vector<std::string> faces;  // empty: trimming curves do not move
+  double tolerance = 0.0;          // how far the faces may part there (length unit)
+  bool any() const { return !faces.empty(); }
+};
+
 struct Edit {
   std::string name;
   Scale scale;
@@ -122,6 +130,7 @@ struct Edit {
   std::vector<Hold> holds;
   Continuity continuity = Continuity::kMeasured;
   std::vector<EdgeContinuity> edge_continuity;
+  Follow follow;
   VolumeGoal volume;
   Method method = Method::kIsotropic;
   std::array<int, 3> axis_order = {0, 1, 2};  // kAxis

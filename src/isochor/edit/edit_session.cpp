@@ -10,6 +10,8 @@
 #include "isochor/base/error.h"
 #include "isochor/base/tolerance.h"
 #include "isochor/edit/edit_refinement.h"
+#include "isochor/edit/edit_session_state.h"
+#include "isochor/edit/follow.h"
 #include "isochor/edit/prepared_edit.h"
 
 namespace isochor {
@@ -49,6 +51,21 @@ void check_numbers(const Edit& edit) {
   }
 }
 
+// Why trimming curves cannot move here, in words; else empty.
+std::string objection_to_following(const Surroundings& surroundings, const Edit& edit) {
+  if (!surroundings.measure) {
+    return "\"follow\" needs a solid from a STEP, IGES or BREP file, whose trimming curves it "
+           "moves";
+  }
+  if (!surroundings.closing.empty()) {
+    return "\"follow\" works on closed solids; this one is closed by planes that the user names";
+  }
+  if (!std::isfinite(edit.follow.tolerance) || !(edit.follow.tolerance > 0.0)) {
+    return "the tolerance of \"follow\" must be larger than zero";
+  }
+  return "";
+}
+
 bool has_moved(const Patch& patch, const std::vector<Vec3>& displacement) {
   return std::any_of(patch.points.begin(), patch.points.end(),
                      [&](int id) { return displacement[static_cast<size_t>(id)] != Vec3::Zero(); });
@@ -56,70 +73,13 @@ bool has_moved(const Patch& patch, const std::vector<Vec3>& displacement) {
 
 }  // namespace
 
-struct EditSession::State {
-  // Everything that an undo brings back.
-  struct Snapshot {
-    PatchModel model;
-    double reference = 0.0;  // the volume that "keep" means
-    double excess = 0.0;     // the model's volume minus the reference, from exact changes
-    std::vector<bool> moved_patches;
-  };
-  struct Active {
-    Edit edit;
-    std::unique_ptr<PreparedEdit> prepared;
-    Snapshot candidate;
-    Certificate certificate;
-    double prepare_ms = 0.0;
-  };
-
-  Snapshot now;
-  Surroundings surroundings;
-  double patches_bound = 0.0;  // of the volume at the start
-  std::vector<Snapshot> undo, redo;
-  std::optional<Active> active;
-
-  double total() const { return now.reference + now.excess; }
-  // What changes of the volume are compared with: the volume, or the cube of the diagonal where the
-  // volume is no more than rounding of that (an open sheet that straddles z = 0).
-  double scale_of(double volume) const {
-    const double cube = std::pow(diagonal(now.model), 3);
-    return std::abs(volume) > kVolumeKept * cube ? std::abs(volume) : cube;
+std::vector<int> moved_points(const std::vector<Vec3>& from, const std::vector<Vec3>& to) {
+  std::vector<int> moved;
+  for (size_t i = 0; i < to.size(); ++i) {
+    if (to[i] != from[i]) moved.push_back(static_cast<int>(i));
   }
-
-  // The change that the goal asks for, from the present volume.
-  double wanted_change(const VolumeGoal& goal) const {
-    switch (goal.kind) {
-      case VolumeGoal::Kind::kKeep:
-        return -now.excess;
-      case VolumeGoal::Kind::kFree:
-        return 0.0;
-      case VolumeGoal::Kind::kTarget:
-        return (goal.value - now.reference) - now.excess;
-      case VolumeGoal::Kind::kFactor:
-        return (goal.value - 1.0) * total();
-      case VolumeGoal::Kind::kChange:
-        return goal.value;
-    }
-    return 0.0;
-  }
-
-  Certificate refusal(const Edit& edit, std::string reason) const {
-    Certificate certificate;
-    certificate.name = edit.name;
-    certificate.resolved = edit;
-    certificate.outcome = Outcome::kRefused;
-    certificate.reason = std::move(reason);
-    certificate.volume.before = certificate.volume.after = total();
-    return certificate;
-  }
-
-  void solve(const std::vector<Vec3>& values);
-  void fill(const SolveResult& result, const std::vector<Vec3>& values);
-  // `after` becomes the candidate; `moved`: its points that have moved.
-  void fill_volume(const PatchModel& rest, PatchModel after, const std::vector<int>& moved);
-  void fill_places(const PatchModel& after, const std::vector<Vec3>& values,
-                   const std::vector<Vec3>& delta);
-};
+  return moved;
+}
 
 EditSession::EditSession(PatchModel model, Surroundings surroundings)
     : state_(std::make_unique<State>()) {
@@ -174,8 +134,17 @@ Certificate EditSession::begin(const Edit& edit) {
     return state.refusal(edit, "the edit moves nothing and asks for no other volume");
   }
   const Stopwatch watch;
-  PatchModel rest = refined_for(state.now.model, edit);
-  auto prepared = std::make_unique<PreparedEdit>(std::move(rest), edit, state.surroundings.closing);
+  Edit first = edit;  // with followers, the volume comes after them
+  if (edit.follow.any()) {
+    const std::string objection = objection_to_following(state.surroundings, edit);
+    if (!objection.empty()) return state.refusal(edit, objection);
+    first.volume = {VolumeGoal::Kind::kFree, 0.0};
+  }
+  PatchModel rest = refined_for(
+      edit.follow.any() ? with_released_trims(state.now.model, edit.follow) : state.now.model,
+      first);
+  auto prepared =
+      std::make_unique<PreparedEdit>(std::move(rest), first, state.surroundings.closing);
   state.active.emplace(State::Active{edit, std::move(prepared), state.now, {}, 0.0});
   state.active->prepare_ms = watch.milliseconds();
   std::vector<Vec3> values;
@@ -197,6 +166,7 @@ void EditSession::State::solve(const std::vector<Vec3>& values) {
   const double wanted = wanted_change(active->edit.volume);
   Certificate certificate;
   active->prepared->describe(certificate);
+  certificate.resolved = active->edit;
   certificate.volume.before = total();
   certificate.volume.wanted_change = wanted;
   active->certificate = std::move(certificate);
@@ -235,41 +205,53 @@ void EditSession::State::fill(const SolveResult& result, const std::vector<Vec3>
   certificate.volume.after = total();
   if (result.outcome != Outcome::kDone) return;
 
-  const PatchModel& rest = active->prepared->rest();
-  PatchModel after = rest;
-  after.points = active->prepared->displaced(result.delta);
-  std::vector<Vec3> displacement(after.points.size());
-  std::vector<int> moved;
-  for (size_t i = 0; i < displacement.size(); ++i) {
-    displacement[i] = after.points[i] - rest.points[i];
-    if (displacement[i] != Vec3::Zero()) moved.push_back(static_cast<int>(i));
-    certificate.max_distance = std::max(certificate.max_distance, displacement[i].norm());
-  }
-  certificate.poles_moved = static_cast<int>(moved.size());
-  std::vector<bool> moved_now(rest.patches.size(), false);
-  for (size_t q = 0; q < rest.patches.size(); ++q) {
-    if (!has_moved(rest.patches[q], displacement)) continue;
-    ++certificate.patches_moved;
-    moved_now[q] = true;
-    active->candidate.moved_patches[q] = true;
-  }
   certificate.energy_before = result.positional_energy;
   certificate.energy_after = result.energy;
-  fill_places(after, values, result.delta);
-  const SkinMeasures skin = active->prepared->measure_skin(after.points, moved_now);
-  certificate.joins = skin.joins;
   certificate.skin.residual = result.kept_residual;
+  const std::vector<Vec3> points = active->prepared->displaced(result.delta);
+  if (active->edit.follow.any()) return finish_followed(points, values, result.delta);
+  const PatchModel& rest = active->prepared->rest();
+  PatchModel after = rest;
+  after.points = points;
+  fill_places(after, values, result.delta);
+  const SkinMeasures skin =
+      active->prepared->measure_skin(after.points, fill_motion(rest.patches, rest.points, points));
+  certificate.joins = skin.joins;
   certificate.skin.change = skin.change;
-  fill_volume(rest, std::move(after), moved);
+  fill_volume(rest, std::move(after), moved_points(rest.points, points));
+}
+
+std::vector<bool> EditSession::State::fill_motion(const std::vector<Patch>& patches,
+                                                  const std::vector<Vec3>& from,
+                                                  const std::vector<Vec3>& to) {
+  Certificate& certificate = active->certificate;
+  std::vector<Vec3> displacement(to.size());
+  for (size_t i = 0; i < displacement.size(); ++i) {
+    displacement[i] = to[i] - from[i];
+    certificate.max_distance = std::max(certificate.max_distance, displacement[i].norm());
+  }
+  certificate.poles_moved = static_cast<int>(moved_points(from, to).size());
+  std::vector<bool> moved(patches.size(), false);
+  for (size_t q = 0; q < patches.size(); ++q) {
+    if (!has_moved(patches[q], displacement)) continue;
+    ++certificate.patches_moved;
+    moved[q] = true;
+    active->candidate.moved_patches[q] = true;
+  }
+  return moved;
 }
 
 void EditSession::State::fill_volume(const PatchModel& rest, PatchModel after,
                                      const std::vector<int>& moved) {
-  const bool free = active->edit.volume.kind == VolumeGoal::Kind::kFree;
   const VolumeForm& form = active->prepared->volume_form();
-  VolumeRecord& volume = active->certificate.volume;
   // Of the points as they come out, rounded: more precise than what the solution aimed at.
   const Bounded change = form.bounded_change(rest.points, after.points, form.support_of(moved));
+  take_volume(change, std::move(after));
+}
+
+void EditSession::State::take_volume(const Bounded& change, PatchModel after) {
+  const bool free = active->edit.volume.kind == VolumeGoal::Kind::kFree;
+  VolumeRecord& volume = active->certificate.volume;
   volume.after = volume.before + change.value;
   volume.relative_change = change.value / scale_of(volume.before);
   volume.total_bound = surroundings.outside_bound + patches_bound;

@@ -9,10 +9,14 @@
 //  (2) drag(x); drag(y) leaves the same candidate as drag(y) alone;
 //  (3) the open sides of a model closed by planes stay in their planes; beyond a mirror plane the
 //      model goes on as its mirror image, and stays as smooth across as it is;
-//  (4) in a list of edits "keep" means the volume at the start of the session, or the last target:
+//  (4) trimming curves stay where they are, unless the edit names faces that follow: then the
+//  volume
+//      is measured anew with those, and the edit makes up for the change away from the curves;
+//  (5) in a list of edits "keep" means the volume at the start of the session, or the last target:
 //      what one edit misses by rounding, the next one makes up for.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -22,8 +26,15 @@
 #include "isochor/bspline/patch_model.h"
 #include "isochor/edit/certificate.h"
 #include "isochor/edit/edit_script.h"
+#include "isochor/volume/bounded.h"
 
 namespace isochor {
+
+// The volume of a whole solid, trimmed faces included.
+struct MeasuredVolume {
+  Bounded volume;
+  std::string refusal;  // when there is none: why
+};
 
 // What surrounds the editable patches: the rest of a solid contributes a fixed volume.
 struct Surroundings {
@@ -33,6 +44,11 @@ struct Surroundings {
   double outside_bound = 0.0;   // error bound of outside_volume
   // The planes that close it; volumes are measured with their field.
   std::vector<ClosingPlane> closing = {};
+  // Measures the solid with other patches (those with moved[q]) when trimming curves have moved by
+  // up to what `tolerance` leaves open: then the outside is no longer fixed. Null: they cannot.
+  std::function<MeasuredVolume(const PatchModel& model, const std::vector<bool>& moved,
+                               double tolerance)>
+      measure = {};
 };
 
 class EditSession {

@@ -173,6 +173,17 @@ Refine parse_refine(const JsonValue& value) {
   return refine;
 }
 
+Follow parse_follow(const JsonValue& value) {
+  Follow follow;
+  JsonObject object(value);
+  const JsonValue faces = object["faces"];
+  for (size_t k = 0; k < faces.size(); ++k) follow.faces.push_back(faces.at(k).text());
+  if (follow.faces.empty()) faces.fail("the list is empty: name the faces that follow");
+  follow.tolerance = parse_positive(object["tolerance"]);
+  object.finish();
+  return follow;
+}
+
 Extent parse_extent(const JsonValue& value) {
   Extent extent;
   if (value.is_string()) {
@@ -352,6 +363,7 @@ Edit parse_edit(const JsonValue& value) {
   object.with("hold", [&](const JsonValue& holds) {
     for (size_t i = 0; i < holds.size(); ++i) edit.holds.push_back(parse_hold(holds.at(i)));
   });
+  object.with("follow", [&](const JsonValue& follow) { edit.follow = parse_follow(follow); });
   object.with("volume", [&](const JsonValue& volume) { edit.volume = parse_volume(volume); });
   object.with("sink", [&](const JsonValue& sink) { edit.sink = parse_sink(sink); });
   object.with("open", [&](const JsonValue& open) { edit.open = open.boolean(); });

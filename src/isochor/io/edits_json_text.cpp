@@ -126,6 +126,9 @@ Json format_edit(const Edit& edit) {
   if (!edit.holds.empty()) out["hold"] = Json::array();
   for (const Hold& hold : edit.holds) out["hold"].push_back(format_hold(hold));
   out["continuity"] = format_continuity(edit);
+  if (edit.follow.any()) {
+    out["follow"] = {{"faces", edit.follow.faces}, {"tolerance", edit.follow.tolerance}};
+  }
   out["volume"] = format_volume(edit.volume);
   out["method"] = name_of(edit.method);
   if (edit.method == Method::kAxis) {

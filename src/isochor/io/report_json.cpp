@@ -31,6 +31,19 @@ Value volume_value(const VolumeRecord& volume) {
       .set("kept", volume.kept);
 }
 
+Value follower_values(const std::vector<FollowRecord>& followers) {
+  Value list = Value::list();
+  for (const FollowRecord& record : followers) {
+    list.push(Value::object()
+                  .set("patch", record.patch)
+                  .set("deviation", record.deviation)
+                  .set("max_distance", record.max_distance)
+                  .set("poles_before", record.poles_before)
+                  .set("poles_after", record.poles_after));
+  }
+  return list;
+}
+
 Value conflict_values(const std::vector<NamedConflict>& conflicts) {
   Value list = Value::list();
   for (const NamedConflict& conflict : conflicts) {
@@ -90,6 +103,8 @@ Value certificate_value(const Certificate& c) {
       .set("volume", volume_value(c.volume))
       .set("moves", place_records(c.moves))
       .set("holds", place_records(c.holds))
+      .set("followers", follower_values(c.followers))
+      .set("volume_of_followers", c.volume_of_followers)
       .set("joins", Value::object()
                         .set("count", c.joins.count)
                         .set("max_gap", c.joins.max_gap)

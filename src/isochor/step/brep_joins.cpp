@@ -16,6 +16,7 @@
 #include "isochor/bspline/joins.h"
 #include "isochor/bspline/refinement.h"
 #include "isochor/exact/simplest_rational.h"
+#include "isochor/step/shared_trim.h"
 
 namespace isochor::internal {
 namespace {
@@ -42,7 +43,8 @@ int support(const Patch& patch, Side side) {
 
 class Builder {
  public:
-  Builder(BrepTable& table, const std::vector<EdgeFacts>& edges) : table_(table), facts_(edges) {}
+  Builder(BrepTable& table, const std::vector<EdgeFacts>& edges, bool shared_trims)
+      : table_(table), facts_(edges), wants_trims_(shared_trims) {}
 
   PatchModel build();
 
@@ -77,6 +79,8 @@ class Builder {
   void collect_corners(int face, TopTools_IndexedMapOfShape& vertices);
   void add_corner(size_t vertex, int q, bool u_end, bool v_end);
   void judge_corner(int vertex, const PointClasses& classes);
+  void share_trim(size_t edge, const EdgeSite& a, const EdgeSite& b);
+  void add_corners_to_trims(const TopTools_IndexedMapOfShape& vertices);
 
   BrepTable& table_;
   const std::vector<EdgeFacts>& facts_;
@@ -87,6 +91,9 @@ class Builder {
   // faces that touch the vertex elsewhere.
   std::vector<std::vector<int>> corner_support_, corner_points_;
   std::vector<std::set<int>> corner_faces_, other_faces_;
+  bool wants_trims_ = false;
+  std::vector<size_t> trim_edges_;  // of model_.shared_trims
+  std::map<int, std::vector<int>> fixed_by_vertex_;
 };
 
 void Builder::add_patches() {
@@ -301,8 +308,51 @@ void Builder::relate_two(size_t edge, const EdgeSite& a, const EdgeSite& b) {
     const bool opposed = runs_up(a, side_a.ref.side) != runs_up(b, side_b.ref.side);
     if (join_in_common(side_a, side_b, opposed, "a part of a side")) return;
   }
-  lock_towards(edge, a, b);
-  lock_towards(edge, b, a);
+  const bool trims = !side_a.found || !side_b.found;
+  if (wants_trims_ && trims) {
+    share_trim(edge, a, b);
+  } else {
+    lock_towards(edge, a, b);
+    lock_towards(edge, b, a);
+  }
+}
+
+// Locks both sides of a trimming edge. Of two patches, remembers what an edit may release.
+void Builder::share_trim(size_t edge, const EdgeSite& a, const EdgeSite& b) {
+  const std::array<EdgeSite, 2> sites{a, b};
+  SharedTrim trim;
+  for (size_t k = 0; k < 2; ++k) {
+    const auto known = static_cast<int>(model_.locked_sides.size());
+    lock_towards(edge, sites[k], sites[1 - k]);
+    if (static_cast<int>(model_.locked_sides.size()) > known) trim.locked_sides[k] = known;
+    trim.patches[k] = record(sites[k].face).patch;
+  }
+  if (trim.patches[0] < 0 || trim.patches[1] < 0 || trim.patches[0] == trim.patches[1]) return;
+  trim.smoothness = facts_[edge].smoothness;
+  trace_shared_trim(table_, sites, trim);
+  model_.shared_trims.push_back(std::move(trim));
+  trim_edges_.push_back(edge);
+}
+
+// A corner that no patch but the two of a trim touches moves with the trim.
+void Builder::add_corners_to_trims(const TopTools_IndexedMapOfShape& vertices) {
+  for (size_t t = 0; t < model_.shared_trims.size(); ++t) {
+    SharedTrim& trim = model_.shared_trims[t];
+    TopoDS_Vertex ends[2];
+    TopExp::Vertices(table_.edges[trim_edges_[t]].edge, ends[0], ends[1]);
+    for (const TopoDS_Vertex& end : ends) {
+      const int vertex = end.IsNull() ? -1 : vertices.FindIndex(end) - 1;
+      if (fixed_by_vertex_.count(vertex) == 0) continue;
+      std::set<int> faces = corner_faces_[static_cast<size_t>(vertex)];
+      faces.merge(std::set<int>(other_faces_[static_cast<size_t>(vertex)]));
+      const bool only_these = std::all_of(faces.begin(), faces.end(), [&](int face) {
+        const int q = record(face).patch;
+        return q >= 0 && (q == trim.patches[0] || q == trim.patches[1]);
+      });
+      const auto& points = fixed_by_vertex_[vertex];
+      if (only_these) trim.corners.insert(trim.corners.end(), points.begin(), points.end());
+    }
+  }
 }
 
 void Builder::relate_edge(size_t edge) {
@@ -418,6 +468,7 @@ void Builder::judge_corner(int vertex, const PointClasses& classes) {
     reason = "a corner where faces meet that do not move together";
   }
   for (int point : std::set<int>(support.begin(), support.end())) {
+    fixed_by_vertex_[vertex].push_back(static_cast<int>(model_.fixed_points.size()));
     model_.fixed_points.emplace_back(point, reason);
   }
 }
@@ -427,6 +478,7 @@ void Builder::relate_corners() {
   for (size_t f = 0; f < table_.faces.size(); ++f) collect_corners(static_cast<int>(f), vertices);
   const PointClasses classes = point_classes(model_);
   for (size_t v = 0; v < corner_points_.size(); ++v) judge_corner(static_cast<int>(v), classes);
+  add_corners_to_trims(vertices);
 }
 
 PatchModel Builder::build() {
@@ -440,8 +492,8 @@ PatchModel Builder::build() {
 
 }  // namespace
 
-PatchModel patch_model(BrepTable& table, const std::vector<EdgeFacts>& edges) {
-  return Builder(table, edges).build();
+PatchModel patch_model(BrepTable& table, const std::vector<EdgeFacts>& edges, bool shared_trims) {
+  return Builder(table, edges, shared_trims).build();
 }
 
 }  // namespace isochor::internal

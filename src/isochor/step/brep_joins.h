@@ -20,7 +20,9 @@
 namespace isochor::internal {
 
 // Adds the editable faces of the table as patches (and sets their `patch` numbers), then all
-// relations between them. `edges`: the facts of the table's edges, in their order.
-PatchModel patch_model(BrepTable& table, const std::vector<EdgeFacts>& edges);
+// relations between them. `edges`: the facts of the table's edges, in their order. `shared_trims`:
+// list those too.
+PatchModel patch_model(BrepTable& table, const std::vector<EdgeFacts>& edges,
+                       bool shared_trims = false);
 
 }  // namespace isochor::internal

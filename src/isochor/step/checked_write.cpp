@@ -90,11 +90,11 @@ std::vector<RebuildPlan> rebuild_and_check(const WriteJob& job, Document& docume
   if (!report.refusal.empty()) return plans;
   const TopoDS_Shape old = document.shape;
   tell_progress(0.5, "changing faces");
-  report.refusal = rebuild(document, job.edits, job.convert, &plans);
+  report.refusal = rebuild(document, job.edits, job.convert, &plans, job.trim_tolerance);
   if (!report.refusal.empty()) return plans;
   tell_progress(0.6, "checking the result");
   report.rebuilt = shape_facts(document);
-  report.refusal = objection_to_rebuilt(report.before, report.rebuilt);
+  report.refusal = objection_to_rebuilt(report.before, report.rebuilt, job.trim_tolerance);
   if (report.refusal.empty()) report.refusal = objection_to_gaps(old, document.shape);
   return plans;
 }
@@ -202,7 +202,7 @@ WriteReport read_back(const WriteJob& job, const std::string& path, WriteReport 
   report.notices.insert(report.notices.end(), faces.notices.begin(), faces.notices.end());
   report.refusal = objection_to_reread(report.rebuilt, report.reread, labels);
   if (report.refusal.empty()) report.refusal = faces.objection;
-  const std::string growth = tolerance_growth(report.rebuilt, report.reread);
+  const std::string growth = tolerance_growth(report.rebuilt, report.reread, job.trim_tolerance);
   if (!growth.empty() && job.edits.empty()) report.notices.push_back(growth);
   if (report.refusal.empty() && !job.edits.empty()) report.refusal = growth;
   const GapGrowth gaps = gap_growth(report.rebuilt, report.reread);

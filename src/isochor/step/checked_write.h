@@ -17,6 +17,7 @@ struct WriteJob {
   std::vector<EditedFace> edits;     // may be empty
   std::vector<int> convert;          // faces to turn into B-spline before they are edited
   std::string output;
+  double trim_tolerance = 0.0;  // as in write_edited
   // The STEP file that `source` reads, when its own lines may be edited; else empty.
   std::string step_text;
   BridgeLimits limits;

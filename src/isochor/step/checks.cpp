@@ -77,21 +77,23 @@ std::string number_text(double value) {
   return text;
 }
 
-std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt) {
+std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt,
+                                 double trim_tolerance) {
   if (!before.valid) return "the input is not a valid solid" + first_defect(before);
   if (!rebuilt.valid) return "the edited shape is not valid" + first_defect(rebuilt);
   std::string text = different_topology(before, rebuilt);
   const double rounding = kLengthRounding * before.diagonal;
   if (text.empty()) {
-    text = grew("the largest tolerance", before.max_tolerance, rebuilt.max_tolerance, 0.0);
+    text = grew("the largest tolerance", std::max(before.max_tolerance, trim_tolerance),
+                rebuilt.max_tolerance, 0.0);
   }
   if (text.empty()) {
-    text = grew("the largest gap between an edge and its faces", before.max_edge_gap,
-                rebuilt.max_edge_gap, rounding);
+    text = grew("the largest gap between an edge and its faces",
+                std::max(before.max_edge_gap, trim_tolerance), rebuilt.max_edge_gap, rounding);
   }
   if (text.empty()) {
-    text = grew("the largest gap at a vertex", before.max_vertex_gap, rebuilt.max_vertex_gap,
-                rounding);
+    text = grew("the largest gap at a vertex", std::max(before.max_vertex_gap, trim_tolerance),
+                rebuilt.max_vertex_gap, rounding);
   }
   return text;
 }
@@ -108,7 +110,7 @@ std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& re
   BRepBndLib::Add(before, box);
   const double rounding = kLengthRounding * std::sqrt(box.SquareExtent());
   for (size_t k = 0; k < new_gaps.edges.size(); ++k) {
-    const double own = BRep_Tool::Tolerance(TopoDS::Edge(old_edges(static_cast<int>(k) + 1)));
+    const double own = BRep_Tool::Tolerance(TopoDS::Edge(new_edges(static_cast<int>(k) + 1)));
     const std::string text = grew("the gap along edge " + std::to_string(k + 1),
                                   std::max(old_gaps.edges[k], own), new_gaps.edges[k], rounding);
     if (!text.empty()) return text;
@@ -116,9 +118,10 @@ std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& re
   return "";
 }
 
-std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread) {
-  const std::string text = grew("the largest tolerance", written.max_tolerance,
-                                reread.max_tolerance, kSameTolerance * written.max_tolerance);
+std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread, double allowed) {
+  const double before = std::max(written.max_tolerance, allowed);
+  const std::string text =
+      grew("the largest tolerance", before, reread.max_tolerance, kSameTolerance * before);
   return text.empty() ? "" : "after reading the file back, " + text;
 }
 

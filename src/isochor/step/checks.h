@@ -14,15 +14,19 @@ namespace isochor::internal {
 std::string number_text(double value);
 
 // Compares a rebuilt shape with its input. Reading a STEP file again repairs an invalid solid by
-// larger tolerances, so this must happen before anything is written.
-std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt);
+// larger tolerances, so this must happen before anything is written. Tolerances and gaps may grow
+// to `trim_tolerance`, the one that the user gave for moved trims.
+std::string objection_to_rebuilt(const ShapeFacts& before, const ShapeFacts& rebuilt,
+                                 double trim_tolerance = 0.0);
 
 // The same edge by edge: a new gap must not hide behind a larger old one elsewhere. An edge may use
-// its own tolerance, which has not changed.
+// its own tolerance, which has not changed but for moved trims.
 std::string objection_to_gaps(const TopoDS_Shape& before, const TopoDS_Shape& rebuilt);
 
-// Says when the largest tolerance is larger than it was; reading a file again may enlarge it.
-std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread);
+// Says when the largest tolerance is larger than it was, and than `allowed`; reading a file again
+// may enlarge it.
+std::string tolerance_growth(const ShapeFacts& written, const ShapeFacts& reread,
+                             double allowed = 0.0);
 
 // Files store no ranges of edges: a reader finds anew where they end, and gaps may differ. `beyond`
 // is what lies outside the tolerance that the shape had, `inside` what grew within it.

@@ -1,6 +1,8 @@
 #include "isochor/step/displacement.h"
 
 #include <BRep_Tool.hxx>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseLU>
 #include <Geom2d_BSplineCurve.hxx>
 #include <Geom2d_Curve.hxx>
 #include <GeomConvert.hxx>
@@ -8,11 +10,14 @@
 #include <Geom_BSplineSurface.hxx>
 #include <Geom_Line.hxx>
 #include <Geom_TrimmedCurve.hxx>
+#include <TColStd_Array1OfInteger.hxx>
 #include <TColStd_Array1OfReal.hxx>
+#include <TColgp_Array1OfPnt.hxx>
 #include <algorithm>
 #include <cmath>
 
 #include "isochor/base/error.h"
+#include "isochor/bspline/basis.h"
 #include "isochor/bspline/refinement.h"
 #include "isochor/step/occt_surface.h"
 
@@ -29,6 +34,12 @@ constexpr double kSameParameter = 1e-9;
 // Samples along a parameter curve: no B-spline of the degrees allowed vanishes at all of them.
 constexpr int kSamples = 64;
 constexpr int kSamplesPerSpan = 8;
+constexpr int kGapSamples = 2000;
+
+// The curve of a moved trimming edge: spans to begin with, and at most; samples of each.
+constexpr int kFirstSpans = 8;
+constexpr int kMostSpans = 1024;
+constexpr int kFitSamples = 3;
 
 struct ParameterCurve {
   Handle(Geom2d_Curve) curve;
@@ -113,6 +124,67 @@ bool same_basis(const Geom_BSplineCurve& a, const Geom_BSplineCurve& b) {
   return true;
 }
 
+Handle(Geom_Curve) basis_of(const Handle(Geom_Curve) & curve) {
+  const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(curve);
+  return trimmed.IsNull() ? curve : trimmed->BasisCurve();
+}
+
+// The cubic spline on uniform spans that interpolates `place` at its Greville abscissae.
+Handle(Geom_BSplineCurve)
+    interpolated(const std::function<Vec3(double)>& place, double first, double last, int spans) {
+  constexpr int kDegree = 3;
+  std::vector<double> knots(kDegree, first);
+  for (int k = 0; k <= spans; ++k) knots.push_back(first + (last - first) * k / spans);
+  knots.back() = last;
+  knots.insert(knots.end(), kDegree, last);
+  const KnotVector basis(kDegree, knots);
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::Matrix<double, Eigen::Dynamic, 3> right(basis.size(), 3);
+  for (int row = 0; row < basis.size(); ++row) {
+    const double at =
+        std::clamp((knots[static_cast<size_t>(row) + 1] + knots[static_cast<size_t>(row) + 2] +
+                    knots[static_cast<size_t>(row) + 3]) /
+                       kDegree,
+                   first, last);
+    const BasisValues values = evaluate_basis(basis, at);
+    for (int j = 0; j <= kDegree; ++j) {
+      entries.emplace_back(row, values.first + j, values.value(0, j));
+    }
+    right.row(row) = place(at);
+  }
+  Eigen::SparseMatrix<double> matrix(basis.size(), basis.size());
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(matrix);
+  const Eigen::Matrix<double, Eigen::Dynamic, 3> poles = factors.solve(right);
+  TColgp_Array1OfPnt array(1, basis.size());
+  for (int k = 0; k < basis.size(); ++k)
+    array(k + 1) = gp_Pnt(poles(k, 0), poles(k, 1), poles(k, 2));
+  TColStd_Array1OfReal values(1, spans + 1);
+  TColStd_Array1OfInteger multiplicities(1, spans + 1);
+  for (int k = 0; k <= spans; ++k) {
+    values(k + 1) = knots[static_cast<size_t>(kDegree + k)];
+    multiplicities(k + 1) = k == 0 || k == spans ? kDegree + 1 : 1;
+  }
+  return new Geom_BSplineCurve(array, values, multiplicities, kDegree);
+}
+
+// With as many spans as the tolerance needs; null when those are too many.
+Handle(Geom_BSplineCurve) fitted_curve(const std::function<Vec3(double)>& place, double first,
+                                       double last, double tolerance) {
+  for (int spans = kFirstSpans; spans <= kMostSpans; spans *= 2) {
+    const auto curve = interpolated(place, first, last, spans);
+    double deviation = 0.0;
+    const int samples = kFitSamples * spans;
+    for (int k = 0; k < samples; ++k) {
+      const double t = first + (last - first) * (k + 0.5) / samples;
+      const gp_Pnt p = curve->Value(t);
+      deviation = std::max(deviation, (place(t) - Vec3(p.X(), p.Y(), p.Z())).norm());
+    }
+    if (deviation <= tolerance) return curve;
+  }
+  return {};
+}
+
 // A copy without weights that can be refined; null when there is none with the same parameter.
 Handle(Geom_BSplineCurve) as_spline(const Handle(Geom_Curve) & curve, double first, double last) {
   Handle(Geom_BSplineCurve) spline;
@@ -188,10 +260,26 @@ double Displacement::along(const TopoDS_Edge& edge) const {
   return largest;
 }
 
-Vec3 Displacement::at_end(const TopoDS_Edge& edge, int end) const {
+Vec3 Displacement::at_end(const TopoDS_Edge& edge, int end) const { return at(edge, end); }
+
+double Displacement::gap_to(const TopoDS_Edge& edge, const Geom_Curve& curve) const {
+  const ParameterCurve on_face(edge, face_);
+  if (on_face.curve.IsNull()) return 0.0;
+  double gap = 0.0;
+  for (int k = 0; k <= kGapSamples; ++k) {
+    const double fraction = static_cast<double>(k) / kGapSamples;
+    const Uv uv = on_face.at(fraction);
+    const Vec3 p = after_.point(snapped(uv.u, after_.u_knots()), snapped(uv.v, after_.v_knots()));
+    const gp_Pnt on_curve = curve.Value(on_face.first + fraction * (on_face.last - on_face.first));
+    gap = std::max(gap, on_curve.Distance(gp_Pnt(p.x(), p.y(), p.z())));
+  }
+  return gap;
+}
+
+Vec3 Displacement::at(const TopoDS_Edge& edge, double fraction) const {
   const ParameterCurve curve(edge, face_);
   if (curve.curve.IsNull()) return Vec3::Zero();
-  const Uv uv = curve.at(end);
+  const Uv uv = curve.at(fraction);
   const Vec3 d =
       difference_.point(snapped(uv.u, after_.u_knots()), snapped(uv.v, after_.v_knots()));
   return is_noise(d) ? Vec3(Vec3::Zero()) : d;
@@ -231,9 +319,7 @@ Handle(Geom_Curve) Displacement::new_curve(const TopoDS_Edge& edge, const IsoRun
   const auto shift = iso_curve(difference_, run);
   TopLoc_Location location;
   double first = 0.0, last = 0.0;
-  Handle(Geom_Curve) old = BRep_Tool::Curve(edge, location, first, last);
-  const auto trimmed = Handle(Geom_TrimmedCurve)::DownCast(old);
-  if (!trimmed.IsNull()) old = trimmed->BasisCurve();
+  const Handle(Geom_Curve) old = basis_of(BRep_Tool::Curve(edge, location, first, last));
   if (!location.IsEqual(location_)) return iso_curve(after_, run);
   auto curve = Handle(Geom_BSplineCurve)::DownCast(old);
   if (curve.IsNull() || !same_basis(*curve, *shift)) {
@@ -251,6 +337,30 @@ Handle(Geom_Curve) Displacement::new_curve(const TopoDS_Edge& edge, const IsoRun
     curve->SetPole(k, curve->Pole(k).Translated(gp_Vec(d.X(), d.Y(), d.Z())));
   }
   return curve;
+}
+
+Handle(Geom_BSplineCurve) displaced_curve(const TopoDS_Edge& edge, const TopLoc_Location& location,
+                                          const std::function<Vec3(double)>& by, double tolerance) {
+  TopLoc_Location own;
+  double first = 0.0, last = 0.0;
+  const Handle(Geom_Curve) old = BRep_Tool::Curve(edge, own, first, last);
+  if (old.IsNull() || !own.IsEqual(location)) return {};
+  const auto fraction = [&](double t) { return (t - first) / (last - first); };
+  const auto shift =
+      fitted_curve([&](double t) { return by(fraction(t)); }, first, last, tolerance);
+  if (shift.IsNull()) return {};
+  Handle(Geom_BSplineCurve) curve = as_spline(basis_of(old), first, last);
+  if (!curve.IsNull() && bring_to_common_basis(*curve, *shift, first, last)) {
+    for (int k = 1; k <= curve->NbPoles(); ++k) {
+      curve->SetPole(k, curve->Pole(k).Translated(gp_Vec(shift->Pole(k).XYZ())));
+    }
+    return curve;
+  }
+  const auto moved = [&](double t) {
+    const gp_Pnt p = old->Value(t);
+    return Vec3(Vec3(p.X(), p.Y(), p.Z()) + by(fraction(t)));
+  };
+  return fitted_curve(moved, first, last, tolerance);
 }
 
 }  // namespace isochor::internal

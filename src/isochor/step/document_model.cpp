@@ -168,7 +168,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   tell_progress(0.3, "looking at edges");
   for (const EdgeRecord& edge : table.edges) model.edges.push_back(measure_edge(table, edge));
   if (options.entities) number_edges(document, table, model.edges);
-  model.patches = patch_model(table, model.edges);
+  model.patches = patch_model(table, model.edges, options.shared_trims);
   model.patches.unit = model.unit;
   const auto aliases = face_aliases(document);
   tell_progress(0.5, "measuring");

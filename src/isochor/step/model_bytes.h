@@ -36,6 +36,10 @@ void transfer(Io& io, LockedSide& f) {
   io(f.side, f.reason, f.smoothness, f.part);
 }
 template <typename Io>
+void transfer(Io& io, SharedTrim& f) {
+  io(f.patches, f.along, f.boxes, f.locked_sides, f.corners, f.smoothness, f.released);
+}
+template <typename Io>
 void transfer(Io& io, Lock& f) {
   io(f.point, f.reason);
 }
@@ -54,8 +58,8 @@ void transfer(Io& io, SmoothRelation& f) {
 }
 template <typename Io>
 void transfer(Io& io, PatchModel& f) {
-  io(f.unit, f.points, f.patches, f.ties, f.joins, f.locked_sides, f.fixed_points, f.lock_reasons,
-     f.locks, f.relations);
+  io(f.unit, f.points, f.patches, f.ties, f.joins, f.locked_sides, f.fixed_points, f.shared_trims,
+     f.lock_reasons, f.locks, f.relations);
 }
 template <typename Io>
 void transfer(Io& io, FaceFacts& f) {
@@ -102,6 +106,10 @@ template <typename Io>
 void transfer(Io& io, SolidModel& f) {
   io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.open_edges,
      f.moments, f.section, f.below, f.import, f.notices);
+}
+template <typename Io>
+void transfer(Io& io, EditedFacts& f) {
+  io(f.facts, f.refusal);
 }
 template <typename Io>
 void transfer(Io& io, WriteReport& f) {

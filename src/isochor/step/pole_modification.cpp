@@ -2,13 +2,14 @@
 
 #include <BRep_Tool.hxx>
 #include <Geom2d_Curve.hxx>
+#include <algorithm>
 
 namespace isochor::internal {
 
 PoleModification::PoleModification(const RebuildPlan& plan) {
   for (const auto& change : plan.surfaces) surfaces_.Bind(change.face, change.surface);
   for (const auto& change : plan.curves) curves_.Bind(change.edge, change);
-  for (const auto& change : plan.points) points_.Bind(change.vertex, change.point);
+  for (const auto& change : plan.points) points_.Bind(change.vertex, change);
 }
 
 Standard_Boolean PoleModification::NewSurface(const TopoDS_Face& face,
@@ -29,14 +30,16 @@ Standard_Boolean PoleModification::NewCurve(const TopoDS_Edge& edge, Handle(Geom
   if (change == nullptr) return Standard_False;
   curve = change->curve;
   location = change->location;
-  tolerance = BRep_Tool::Tolerance(edge);
+  tolerance = std::max(BRep_Tool::Tolerance(edge), change->tolerance);
   return Standard_True;
 }
 
 Standard_Boolean PoleModification::NewPoint(const TopoDS_Vertex& vertex, gp_Pnt& point,
                                             Standard_Real& tolerance) {
-  if (!points_.Find(vertex, point)) return Standard_False;
-  tolerance = BRep_Tool::Tolerance(vertex);
+  const internal::NewPoint* change = points_.Seek(vertex);
+  if (change == nullptr) return Standard_False;
+  point = change->point;
+  tolerance = std::max(BRep_Tool::Tolerance(vertex), change->tolerance);
   return Standard_True;
 }
 
@@ -53,6 +56,9 @@ Standard_Boolean PoleModification::NewCurve2d(const TopoDS_Edge& edge, const Top
   Standard_Boolean stored = Standard_False;
   curve = BRep_Tool::CurveOnSurface(edge, face, first, last, &stored);
   tolerance = BRep_Tool::Tolerance(edge);
+  if (const internal::NewCurve* change = curves_.Seek(edge)) {
+    tolerance = std::max(tolerance, change->tolerance);
+  }
   return !curve.IsNull() && (stored || new_surface);
 }
 

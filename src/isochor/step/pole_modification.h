@@ -38,7 +38,7 @@ class PoleModification : public BRepTools_Modification {
  private:
   NCollection_DataMap<TopoDS_Shape, Handle(Geom_Surface), TopTools_ShapeMapHasher> surfaces_;
   NCollection_DataMap<TopoDS_Shape, internal::NewCurve, TopTools_ShapeMapHasher> curves_;
-  NCollection_DataMap<TopoDS_Shape, gp_Pnt, TopTools_ShapeMapHasher> points_;
+  NCollection_DataMap<TopoDS_Shape, internal::NewPoint, TopTools_ShapeMapHasher> points_;
 };
 
 }  // namespace isochor::internal

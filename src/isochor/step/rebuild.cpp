@@ -141,8 +141,9 @@ void repoint(const TDF_Label& label, BRepTools_Modifier& modifier,
   }
 }
 
-std::string rebuild_one(Document& document, const Part& part, std::vector<RebuildPlan>* plans) {
-  RebuildPlan plan = plan_rebuild(part.shape, part.changes);
+std::string rebuild_one(Document& document, const Part& part, std::vector<RebuildPlan>* plans,
+                        double trim_tolerance) {
+  RebuildPlan plan = plan_rebuild(part.shape, part.changes, trim_tolerance);
   if (!plan.refusal.empty()) return plan.refusal;
   BRepTools_Modifier modifier(part.shape, new PoleModification(plan));
   if (!modifier.IsDone()) return "the shape could not be rebuilt";
@@ -190,7 +191,8 @@ TopoDS_Shape rebuild_part(const TopoDS_Shape& part, const RebuildPlan& plan) {
 }
 
 std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
-                    const std::vector<int>& convert, std::vector<RebuildPlan>* plans) {
+                    const std::vector<int>& convert, std::vector<RebuildPlan>* plans,
+                    double trim_tolerance) {
   std::map<int, Surface> converted;
   std::string refusal = convert_all(document, convert, converted);
   if (!refusal.empty()) return refusal;
@@ -198,7 +200,9 @@ std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
   std::vector<Part> parts = parts_of(document);
   refusal = distribute(document, faces, converted, parts);
   for (const auto& part : parts) {
-    if (refusal.empty() && !part.changes.empty()) refusal = rebuild_one(document, part, plans);
+    if (refusal.empty() && !part.changes.empty()) {
+      refusal = rebuild_one(document, part, plans, trim_tolerance);
+    }
   }
   if (!refusal.empty()) return refusal;
   if (!document.xde.IsNull()) {

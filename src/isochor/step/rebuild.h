@@ -20,9 +20,11 @@ namespace isochor::internal {
 // Changes the document; `convert` as in ReadOptions. Returns why it cannot be done, in words, or
 // nothing; then the document may be half changed and must be dropped. Throws PreconditionError when
 // a face number is out of range. `plans`, when given, receives what was done to each part.
+// `trim_tolerance`: as in write_edited.
 [[nodiscard]] std::string rebuild(Document& document, const std::vector<EditedFace>& faces,
                                   const std::vector<int>& convert = {},
-                                  std::vector<RebuildPlan>* plans = nullptr);
+                                  std::vector<RebuildPlan>* plans = nullptr,
+                                  double trim_tolerance = 0.0);
 
 // `surface`, given in the document's coordinates, in those of the face's own surface. Poles that
 // have not moved get the old pole itself, because transforming there and back would round. `stated`

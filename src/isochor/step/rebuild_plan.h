@@ -5,6 +5,10 @@
 // new curve is either the old one plus D (when both have the same basis, so that existing gaps
 // stay) or the iso curve of the new surface, in the edge's own parameter. Vertices move by D at
 // their parameters.
+//
+// Trimming edges move only when a tolerance for them is given, and with all their faces: parameter
+// curves stay, the new curve is the old one plus the mean of the faces' displacements, fitted, and
+// the edge's tolerance grows to the gap that is measured then; never beyond the one given.
 #pragma once
 
 #include <Geom_Curve.hxx>
@@ -44,10 +48,12 @@ struct NewCurve {
   TopoDS_Shape edge;
   Handle(Geom_Curve) curve;
   TopLoc_Location location;
+  double tolerance = 0.0;  // at least this for the edge: of a moved trim
 };
 struct NewPoint {
   TopoDS_Shape vertex;
   gp_Pnt point;
+  double tolerance = 0.0;  // at least this for the vertex
 };
 
 struct RebuildPlan {
@@ -57,6 +63,7 @@ struct RebuildPlan {
   std::string refusal;  // why it cannot be done, in words; else empty
 };
 
-RebuildPlan plan_rebuild(const TopoDS_Shape& part, const std::vector<FaceChange>& changes);
+RebuildPlan plan_rebuild(const TopoDS_Shape& part, const std::vector<FaceChange>& changes,
+                         double trim_tolerance = 0.0);
 
 }  // namespace isochor::internal

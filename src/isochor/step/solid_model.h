@@ -103,6 +103,7 @@ struct BridgeLimits {
 
 struct ReadOptions {
   std::vector<int> convert;     // 0-based faces to turn into B-spline patches although they are not
+  bool shared_trims = false;    // also the edges that patches share as trimming curves
   bool moments = false;         // also the moment integrals, which cost several times the volume
   bool entities = false;        // also the numbers of edges in a STEP file
   std::vector<double> section;  // also the section by this plane, NX, NY, NZ, H; or empty
@@ -147,7 +148,17 @@ struct WriteReport {
 // Applies edited faces to `input` and writes `output` (format by extension), atomically.
 // Refuses (written == false) when the rebuilt shape is not valid, a tolerance or gap grew, or the
 // re-read file differs from what was meant. Throws InputError when files cannot be read or written.
+// `trim_tolerance`: trimming edges whose faces are all edited may move, and open by this much.
 WriteReport write_edited(const std::string& input, const ReadOptions& options,
-                         const std::vector<EditedFace>& faces, const std::string& output);
+                         const std::vector<EditedFace>& faces, const std::string& output,
+                         double trim_tolerance = 0.0);
+
+// What the edited shape would be, without writing it: its facts, or why it cannot be built.
+struct EditedFacts {
+  ShapeFacts facts;
+  std::string refusal;
+};
+EditedFacts measure_edited(const std::string& input, const ReadOptions& options,
+                           const std::vector<EditedFace>& faces, double trim_tolerance = 0.0);
 
 }  // namespace isochor

@@ -290,11 +290,16 @@ FaceTrim classify_trim(const Handle(Geom_Surface) & surface, const std::vector<F
   FaceTrim trim = classify_sides(surface, loops, distance);
   if (trim.kind == TrimKind::kNatural) return trim;
   const SurfaceBreaks breaks = surface_breaks(surface);
+  const auto boxes_so_far = [&] { return static_cast<int>(trim.region.boundary.size()); };
   for (size_t l = 0; l < loops.size(); ++l) {
+    trim.boxes.emplace_back();
     for (size_t k = 0; k < loops[l].uses.size(); ++k) {
       const EdgeUse& use = loops[l].uses[k];
-      if (use.curve.IsNull() || listed(trim.sides, l, k)) continue;
-      add_boxes(surface, use, trim.domain, breaks, trim.region.boundary);
+      const int first = boxes_so_far();
+      if (!use.curve.IsNull() && !listed(trim.sides, l, k)) {
+        add_boxes(surface, use, trim.domain, breaks, trim.region.boundary);
+      }
+      trim.boxes.back().emplace_back(first, boxes_so_far());
     }
     trim.region.loops.push_back(polyline(loops[l], breaks));
   }

@@ -15,6 +15,7 @@
 #include <Geom_Surface.hxx>
 #include <TopoDS_Face.hxx>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "isochor/bspline/patch_model.h"
@@ -43,6 +44,8 @@ struct FaceTrim {
   UvBox domain;                    // of the surface; infinite sides are +-1e100 or more
   std::array<SideCover, 4> sides;  // in the order of kSides
   TrimRegion region;
+  // By loop and use: the boxes of the region that cover it, [first, second).
+  std::vector<std::vector<std::pair<int, int>>> boxes;
 };
 
 // Tests sides of the surface's own domain. `distance`: a curve runs along a side when it stays
