@@ -27,7 +27,7 @@ def main():
     real_files += ["--out", options.build_folder / "acceptance" / "real_files"]
     round_trip = [*real_files[:-1], options.build_folder / "acceptance" / "round_trip"]
     commands = [("laws.py", [options.build_folder]), ("figure_four.py", [program]),
-                ("solids.py", [program]), ("half_models.py", [program]),
+                ("solids.py", [program]), ("half_models.py", [program]), ("below_plane.py", [program]),
                 ("continuity.py", [program, "--out", options.build_folder / "acceptance" / "continuity"]),
                 ("line_by_line.py", [program, *([options.real_files] if options.real_files else []),
                                      "--out", options.build_folder / "acceptance" / "line_by_line"]),
