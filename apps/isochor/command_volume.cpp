@@ -50,7 +50,7 @@ void refuse_open(const LoadedModel& loaded, bool measured, const Common& common)
 int run_volume(const VolumeOptions& options, const Common& common) {
   if (!options.section.empty()) require_plane(options.section);
   const std::vector<ClosingPlane> close = parse_close(options.close);
-  const std::optional<ClosingPlane> waterline = parse_below(options.below, close);
+  const std::optional<ClosingPlane> waterline = parse_below(options.below);
   const LoadedModel loaded =
       load_model(options.model, common, {}, {options.moments, options.section, close, waterline});
   const bool measured = options.moments || !options.section.empty() || waterline;

@@ -136,13 +136,10 @@ void print_section(const Common& common, const Section& s, const std::string& un
   if (s.coplanar) print(common, "a face lies in the plane: the area is the limit from below");
 }
 
-std::optional<ClosingPlane> parse_below(const std::string& text,
-                                        const std::vector<ClosingPlane>& close) {
+std::optional<ClosingPlane> parse_below(const std::string& text) {
   if (text.empty()) return std::nullopt;
   try {
-    const ClosingPlane plane = parse_waterline(text);
-    (void)require_field_below(plane, close);
-    return plane;
+    return parse_waterline(text);
   } catch (const InputError& error) {
     throw InputError("--below", error.entity(), error.reason());
   }

@@ -26,12 +26,11 @@ Section section_of(const LoadedModel& loaded, const std::vector<double>& plane);
 Value to_value(const Section& section);
 void print_section(const Common& common, const Section& section, const std::string& unit);
 
-// The plane of --below; empty for an empty text. InputError for what is no plane, and for one that
-// does not go with the closing planes.
-std::optional<ClosingPlane> parse_below(const std::string& text,
-                                        const std::vector<ClosingPlane>& close);
+// The plane of --below; empty for an empty text. InputError for what is no plane.
+std::optional<ClosingPlane> parse_below(const std::string& text);
 // What a closed model, or one closed by planes, has below: of its patches where they are the whole
-// model, else as the reader of the CAD file measured it.
+// model, else as the reader of the CAD file measured it. InputError when the planes do not go
+// together.
 PartBelow below_of(const LoadedModel& loaded, const ClosingPlane& plane);
 
 // The value of the key "below".

@@ -256,6 +256,25 @@ TEST(Below, LeaningPlanesAndClosedHalves) {
   EXPECT_LT(along.bound, 1e-9);
 }
 
+// A deck that slopes, over a stern plane and the centre plane: no direction lies in all of them,
+// and none needs to where the deck is above the water.
+TEST(Below, CapsAboveTheWaterDoNotMatter) {
+  const PatchModel cube = testing::make_cube_model(1, 1);
+  const ClosingPlane sheer = plane(Vec3(-0.1, 0, 1), 0.9);
+  const std::vector<ClosingPlane> close = {plane(Vec3::UnitY(), 0), plane(Vec3::UnitX(), 0), sheer};
+  const Vec3 low = Vec3::Zero(), high = Vec3::Ones();
+  EXPECT_EQ(internal::caps_below(plane(Vec3::UnitZ(), 0.5), close, low, high).size(), 2U);
+  EXPECT_EQ(internal::caps_below(plane(Vec3::UnitZ(), 0.95), close, low, high).size(), 3U);
+  EXPECT_EQ(internal::caps_below(plane(-Vec3::UnitZ(), -0.95), close, low, high).size(), 3U);
+  // As if the sheer closed it; below 0.5 the cube has everything but walls that are planes.
+  const PartBelow part = part_below(cube, plane(Vec3::UnitZ(), 0.5), close);
+  EXPECT_NEAR(part.volume, 0.5, part.bound);
+  // Below the sheer's end a field along y is left, which is zero on the centre plane.
+  const std::optional<FluxField> field = field_below(plane(Vec3::UnitZ(), 0.95), close);
+  ASSERT_TRUE(field.has_value());
+  EXPECT_EQ(field->direction, Vec3::UnitY());
+}
+
 TEST(Below, PlanesThatMissTheBody) {
   const PatchModel cube = testing::make_cube_model(2, 2);
   const PartBelow nothing = part_below(cube, plane(Vec3::UnitZ(), -0.5));

@@ -1,6 +1,8 @@
 #include "isochor/step/solid_below.h"
 
+#include <BRepBndLib.hxx>
 #include <BRep_Tool.hxx>
+#include <Bnd_Box.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
 #include <cmath>
@@ -66,6 +68,16 @@ FrameField lanes_for(const FluxField& field, const ShapeFrame& seen) {
   return result;
 }
 
+std::vector<ClosingPlane> caps_near(const TopoDS_Shape& shape, const ClosingPlane& plane,
+                                    const std::vector<ClosingPlane>& closing) {
+  Bnd_Box box;
+  BRepBndLib::Add(shape, box, Standard_False);
+  if (box.IsVoid()) return closing;
+  const gp_Pnt low = box.CornerMin(), high = box.CornerMax();
+  return caps_below(plane, closing, Vec3(low.X(), low.Y(), low.Z()),
+                    Vec3(high.X(), high.Y(), high.Z()));
+}
+
 // Whether all of the shape is below although its box is not.
 bool nothing_above(const TopoDS_Shape& shape, const ClosingPlane& plane,
                    const std::vector<ClosingPlane>& closing) {
@@ -85,7 +97,8 @@ PartBelow shape_below(const TopoDS_Shape& shape, const ClosingPlane& plane,
   part.normal = plane.normal;
   part.height = plane.offset;
   part.centroid_bound = std::numeric_limits<double>::infinity();
-  const FluxField field = require_field_below(plane, closing);
+  const std::vector<ClosingPlane> caps = caps_near(shape, plane, closing);
+  const FluxField field = require_field_below(plane, caps);
   const std::optional<ShapeFrame> seen = shape_frame(shape, plane.normal, plane.offset);
   if (!seen || seen->low >= 0.0) return part;
   const Sums sums = all_faces(shape, *seen, lanes_for(field, *seen));

@@ -113,9 +113,16 @@ PartBelow part_below(const PatchModel& model, const ClosingPlane& plane,
   PartBelow part;
   part.normal = plane.normal;
   part.height = plane.offset;
-  const FluxField field = require_field_below(plane, closing);
   part.centroid_bound = std::numeric_limits<double>::infinity();
   if (model.points.empty()) return part;
+  Vec3 low = model.points.front();
+  Vec3 high = low;
+  for (const Vec3& p : model.points) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  const FluxField field =
+      require_field_below(plane, internal::caps_below(plane, closing, low, high));
   const Frame frame = internal::plane_frame(model.points, plane.normal, plane.offset);
   const double reach = internal::reach_of(model.points, frame);
   const double noise = kCoordinateNoise * reach + 4 * kUnitRoundoff * frame.origin.norm();

@@ -16,6 +16,7 @@ constexpr double kMargin = 0x1p-4;   // around it, in parameters of the cell
 constexpr int kRationalPoints = 16;  // resolve a quotient whose weights are within kWeightRatio
 constexpr int kFewerPoints = 4;      // by this much is the rule coarser that judges another
 constexpr double kTermNoise = 32 * kUnitRoundoff;  // of a lane, relative to its factors
+constexpr double kRimSlack = 1e-4;  // of the diagonal: how far outside its box a cap may be
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double binomial(int n, int k) {
@@ -118,6 +119,40 @@ void restrict_u(BezierCell& cell, double a, double b) {
 }
 
 }  // namespace
+
+std::vector<ClosingPlane> caps_below(const ClosingPlane& plane,
+                                     const std::vector<ClosingPlane>& closing, const Vec3& low,
+                                     const Vec3& high) {
+  // Rims miss their planes by the tolerance that check_closing allows, or a file's own.
+  const double slack = kRimSlack * (high - low).norm();
+  const auto corner = [&](int k) {
+    Vec3 c;
+    for (int a = 0; a < 3; ++a) c[a] = (k >> a & 1) != 0 ? high[a] + slack : low[a] - slack;
+    return c;
+  };
+  std::vector<ClosingPlane> result;
+  for (const ClosingPlane& other : closing) {
+    // The lowest point of the plane in the box lies on one of the box's edges.
+    double lowest = kInfinity;
+    for (int k = 0; k < 8; ++k) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if ((k >> axis & 1) != 0) continue;
+        const Vec3 a = corner(k);
+        const Vec3 b = corner(k | 1 << axis);
+        const double at_a = other.normal.dot(a) - other.offset;
+        const double at_b = other.normal.dot(b) - other.offset;
+        if ((at_a < 0.0) == (at_b < 0.0) && at_a != 0.0 && at_b != 0.0) continue;
+        const double share = at_a == at_b ? 0.0 : at_a / (at_a - at_b);
+        const Vec3 crossing = a + share * (b - a);
+        lowest = std::min(lowest, plane.normal.dot(crossing));
+        if (at_a == at_b) lowest = std::min(lowest, plane.normal.dot(b));
+      }
+    }
+    // A plane beside the box closes nothing: it is judged as before.
+    if (std::isinf(lowest) || lowest < plane.offset) result.push_back(other);
+  }
+  return result;
+}
 
 FrameField in_frame(const FluxField& field, const Frame& frame) {
   FrameField result;

@@ -10,6 +10,11 @@
 
 namespace isochor::internal {
 
+// Those of the closing planes whose caps may lie below: a cap is inside the box of the body.
+std::vector<ClosingPlane> caps_below(const ClosingPlane& plane,
+                                     const std::vector<ClosingPlane>& closing, const Vec3& low,
+                                     const Vec3& high);
+
 // The field in the frame of a plane, in which Z = 0 is the waterline.
 struct FrameField {
   Vec3 slope = Vec3::UnitZ(), direction = Vec3::UnitZ();
