@@ -24,6 +24,7 @@ CheckedModel subject_of(const LoadedModel& loaded) {
   if (loaded.solid) {
     CheckedModel model = checked(*loaded.solid, around.closed, around.why_open);
     model.import_faults = import_findings(loaded.solid->import);
+    model.import_warnings = loaded.solid->import.sewing.lines();
     return model;
   }
 #endif

@@ -22,6 +22,20 @@ Value to_value(const std::vector<std::pair<std::string, int>>& counts) {
   return list;
 }
 
+Value to_value(const SewingAccount& sewing) {
+  return Value::object()
+      .set("done", sewing.done)
+      .set("declined", sewing.declined)
+      .set("tolerance", sewing.tolerance)
+      .set("faces", sewing.faces)
+      .set("shells", sewing.shells)
+      .set("solids", sewing.solids)
+      .set("free_edges_before", sewing.free_edges_before)
+      .set("free_edges_after", sewing.free_edges_after)
+      .set("dropped_faces", sewing.dropped)
+      .set("turned_faces", sewing.turned);
+}
+
 void print_list(const Common& common, const char* what, const std::vector<std::string>& texts) {
   for (size_t k = 0; k < texts.size() && k < kListed; ++k) {
     print(common, format("  %s %s", what, texts[k].c_str()));
@@ -55,7 +69,8 @@ Value to_value(const ImportAccount& account) {
       .set("faces_without_area", account.no_area)
       .set("broken_rules", account.broken)
       .set("repairs", to_value(account.repairs))
-      .set("failures", to_value(account.failures));
+      .set("failures", to_value(account.failures))
+      .set("sewing", to_value(account.sewing));
 }
 
 void print_import(const Common& common, const ImportAccount& account) {
@@ -78,6 +93,7 @@ void print_import(const Common& common, const ImportAccount& account) {
   }
   print_counts(common, "could not be read:", account.failures);
   print_counts(common, "repaired while reading:", account.repairs);
+  for (const std::string& line : account.sewing.lines()) print(common, "  " + line);
 }
 
 std::vector<std::string> import_findings(const ImportAccount& account) {

@@ -16,6 +16,7 @@ import unittest
 
 ISOCHOR, SOURCE, WORK = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 CUBE = SOURCE / "data/step/cube.isochor.json"
+CUBE_STEP = SOURCE / "data/step/cube.step"
 HULL = SOURCE / "data/step/hull.step"
 PATCHWORK = SOURCE / "data/step/patchwork.step"
 PULL = SOURCE / "data/edits/cube_figure4.json"
@@ -109,6 +110,57 @@ class Info(Scenario):
             self.assertLess(patch["free_poles"], count)
             self.assertGreaterEqual(patch["free_poles"] + held, count)
         self.assertEqual([p["reversed"] for p in info["patches"]], [False, True])
+
+
+class Sewing(Scenario):
+    """A cube of which the file states the six surfaces only."""
+
+    def loose_cube(self, surfaces=slice(None)):
+        lines = CUBE_STEP.read_text().splitlines(keepends=True)
+        numbers = [line.split("=")[0] for line in lines if "=B_SPLINE_SURFACE_WITH_KNOTS(" in line]
+        self.assertEqual(len(numbers), 6)
+        text = "".join(lines)
+        for old, new in [("MANIFOLD_SOLID_BREP('cube',#1331)",
+                          f"GEOMETRIC_SET('cube',({','.join(numbers[surfaces])}))"),
+                         ("ADVANCED_BREP_SHAPE_REPRESENTATION",
+                          "GEOMETRICALLY_BOUNDED_SURFACE_SHAPE_REPRESENTATION")]:
+            self.assertIn(old, text)
+            text = text.replace(old, new)
+        (WORK / "loose.step").write_text(text)
+        return "loose.step"
+
+    def test_surfaces_become_a_solid_and_say_so(self):
+        info = self.run_json("info", self.loose_cube())
+        self.assertEqual((info["closed"], info["valid"], info["solids"]), (True, True, 1))
+        self.assertLessEqual(abs(info["volume"] - 1), 1e-12)
+        sewing = info["import"]["sewing"]
+        self.assertEqual((sewing["done"], sewing["declined"]), (True, ""))
+        self.assertEqual([sewing[key] for key in ("faces", "shells", "solids", "free_edges_before",
+                                                  "free_edges_after", "dropped_faces")],
+                         [6, 1, 1, 24, 0, []])
+        self.assertIn("sewn within", isochor("info", "loose.step").stdout)
+        check = self.run_json("check", "loose.step")
+        self.assertEqual([(f["kind"], f["severity"]) for f in check["findings"]][0], ("import", "warning"))
+
+    def test_edits_keep_the_volume_and_the_numbers_of_faces(self):
+        model = self.loose_cube()
+        self.assertEqual(isochor("suggest", model, "-o", "edits.json").returncode, 0)
+        edit = self.run_json("edit", model, "edits.json", "-o", "out.step")
+        self.assertTrue(edit["edits"][-1]["volume"]["kept"])
+        after = self.run_json("info", "out.step")
+        self.assertTrue(after["closed"])
+        self.assertEqual(len(after["faces"]), 6)
+        against = self.run_json("check", "out.step", "--against", model)["against"]
+        self.assertEqual([face["handle"] for face in against], [f"face:{k}" for k in range(1, 7)])
+        pulled = json.loads((WORK / "edits.json").read_text())["edits"][0]["move"][0]
+        for face in against:
+            self.assertLessEqual(face["max_distance"], 3 * math.hypot(*pulled["by"]), face)
+        self.assertGreater(against[int(pulled["patch"].removeprefix("face:")) - 1]["moved_poles"], 0)
+
+    def test_what_gains_nothing_stays(self):
+        sewing = self.run_json("info", self.loose_cube(slice(1)))["import"]["sewing"]
+        self.assertEqual((sewing["done"], sewing["declined"]), (False, ""))
+        self.assertFalse(self.run_json("info", CUBE_STEP)["import"]["sewing"]["done"])
 
 
 class Volume(Scenario):

@@ -112,10 +112,25 @@ MeasureChange measure_change(const TopoDS_Shape& before, const TopoDS_Shape& aft
   return change;
 }
 
+// The file has an edge of its own for each face, and vertices likewise.
+std::string objection_to_sewn_edges(const Document& document,
+                                    const std::vector<RebuildPlan>& plans) {
+  if (!document.sewn()) return "";
+  for (const auto& plan : plans) {
+    if (!plan.curves.empty() || !plan.points.empty()) {
+      return "edges move, and the faces were sewn on reading, so they are not the edges of the "
+             "file";
+    }
+  }
+  return "";
+}
+
 // Returns why not, in words. `before`: the shape as it was read.
 std::string write_lines(const WriteJob& job, const Document& document, const TopoDS_Shape& before,
                         const std::vector<RebuildPlan>& plans, const std::string& path,
                         WriteReport& report) {
+  const std::string objection = objection_to_sewn_edges(document, plans);
+  if (!objection.empty()) return objection;
   SurgicalText text;
   try {
     const Part21File file = load_part21(job.step_text);

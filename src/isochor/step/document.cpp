@@ -18,6 +18,7 @@
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
 #include "isochor/step/import_faces.h"
+#include "isochor/step/sewing.h"
 
 namespace isochor::internal {
 namespace {
@@ -170,6 +171,7 @@ Document load_document(const std::string& path) {
   if (document.shape.IsNull()) throw InputError(path, "", "has no shape");
   if (document.faces.IsEmpty()) throw InputError(path, "", "has no face");
   account_for_import(document);
+  sew(document);
   return document;
 }
 

@@ -6,6 +6,7 @@
 
 #include <TDF_Label.hxx>
 #include <TDocStd_Document.hxx>
+#include <TopTools_DataMapOfShapeShape.hxx>
 #include <TopTools_IndexedMapOfShape.hxx>
 #include <TopoDS_Face.hxx>
 #include <TopoDS_Shape.hxx>
@@ -38,11 +39,13 @@ struct Document {
   std::unordered_map<const void*, std::string> names;
   std::vector<std::string> notices;
   ImportAccount account;
+  TopTools_DataMapOfShapeShape origins;  // after sewing: the file's own face of each
 
   int face_count() const { return faces.Extent(); }
   // `k` counts from 0, as in FaceFacts.
   TopoDS_Face face(int k) const;
   std::string name_of(const TopoDS_Shape& shape) const;  // "" when it has none
+  bool sewn() const { return account.sewing.done; }
 };
 
 // The name of the part that stores a face, by the face's TShape; only parts that have a name.

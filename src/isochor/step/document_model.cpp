@@ -33,8 +33,10 @@ void add_entity_names(const Document& document, std::vector<std::vector<std::str
   if (document.session.IsNull() || document.session->TransferReader().IsNull()) return;
   const Handle(Interface_InterfaceModel) model = document.session->Model();
   for (int k = 0; k < document.face_count(); ++k) {
+    TopoDS_Shape own = document.face(k);
+    document.origins.Find(document.face(k), own);
     const Handle(Standard_Transient) entity =
-        document.session->TransferReader()->EntityFromShapeResult(document.face(k), 1);
+        document.session->TransferReader()->EntityFromShapeResult(own, 1);
     if (entity.IsNull() || !model->Contains(entity)) continue;
     aliases[static_cast<size_t>(k)].push_back(model->StringLabel(entity)->ToCString());
   }

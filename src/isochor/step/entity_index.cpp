@@ -39,6 +39,12 @@ EntityIndex::EntityIndex(const Document& document) {
     by_shape_.emplace(shape.TShape().get(),
                       Entry{entity, number > 0 ? static_cast<std::uint64_t>(number) : 0});
   }
+  for (TopTools_DataMapOfShapeShape::Iterator it(document.origins); it.More(); it.Next()) {
+    const auto found = by_shape_.find(it.Value().TShape().get());
+    if (found == by_shape_.end()) continue;
+    const Entry own = found->second;
+    by_shape_.emplace(it.Key().TShape().get(), own);
+  }
 }
 
 Handle(Standard_Transient) EntityIndex::entity(const TopoDS_Shape& shape) const {

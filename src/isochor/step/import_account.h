@@ -21,6 +21,20 @@ struct ShapeCounts {
   int solids = 0, shells = 0, faces = 0;  // each once, however often an assembly uses it
 };
 
+// What sewing made of loose faces and open shells. Faces by their numbers before it: "face:7".
+struct SewingAccount {
+  bool done = false;       // false: the file's own shape stayed
+  std::string declined;    // why, in words, where edges run together and were not joined
+  double tolerance = 0.0;  // in the file's unit
+  int faces = 0, shells = 0, solids = 0;  // afterwards
+  int free_edges_before = 0, free_edges_after = 0;
+  std::vector<std::string> dropped;  // without area
+  std::vector<std::string> turned;   // turned round
+
+  // What happened, a line each; empty when there was nothing to sew.
+  std::vector<std::string> lines() const;
+};
+
 struct ImportAccount {
   bool has_text = false;  // the rest of the text's account is known: STEP files only
   int entities = 0;
@@ -35,6 +49,7 @@ struct ImportAccount {
   std::vector<std::string> no_area;  // faces without area: "face:7"
   std::vector<std::pair<std::string, int>> repairs;   // messages of OpenCASCADE, with their number
   std::vector<std::pair<std::string, int>> failures;  // what it says it could not read
+  SewingAccount sewing;
 
   bool complete() const { return broken.empty() && lost.empty(); }
   // Why a file is not complete, in words, or empty.

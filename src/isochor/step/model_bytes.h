@@ -98,9 +98,14 @@ void transfer(Io& io, ShapeCounts& f) {
   io(f.solids, f.shells, f.faces);
 }
 template <typename Io>
+void transfer(Io& io, SewingAccount& f) {
+  io(f.done, f.declined, f.tolerance, f.faces, f.shells, f.solids, f.free_edges_before,
+     f.free_edges_after, f.dropped, f.turned);
+}
+template <typename Io>
 void transfer(Io& io, ImportAccount& f) {
   io(f.has_text, f.entities, f.error_entities, f.roots, f.junk_bytes, f.stated, f.read, f.broken,
-     f.lost, f.unused, f.added_faces, f.no_area, f.repairs, f.failures);
+     f.lost, f.unused, f.added_faces, f.no_area, f.repairs, f.failures, f.sewing);
 }
 template <typename Io>
 void transfer(Io& io, SolidModel& f) {

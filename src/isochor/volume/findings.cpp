@@ -51,6 +51,9 @@ class Collector {
     for (const std::string& fault : model_.import_faults) {
       add({"import", Severity::kFault, "", {}, {}, {}, fault, -1, "", {}});
     }
+    for (const std::string& warning : model_.import_warnings) {
+      add({"import", Severity::kWarning, "", {}, {}, {}, warning, -1, "", {}});
+    }
     for (size_t e = 0; e < model_.edges.size(); ++e) judge_edge(static_cast<int>(e));
     for (const CheckedFace& face : model_.faces) judge_face(face);
     judge_whole();

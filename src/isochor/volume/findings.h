@@ -48,7 +48,8 @@ struct CheckedModel {
   std::string why_open;
   double volume = 0.0;  // meaningful when closed
   double volume_bound = 0.0;
-  std::vector<std::string> import_faults;  // what the reader lost or could not understand
+  std::vector<std::string> import_faults;    // what the reader lost or could not understand
+  std::vector<std::string> import_warnings;  // what it joined, or could have
   double diagonal = 0.0;
 };
 
