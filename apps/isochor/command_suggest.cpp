@@ -53,9 +53,13 @@ std::string why_nothing_is_free(const LoadedModel& loaded,
 }
 
 // Shapes of coordinates like 1e300 have no measures: an error about the model.
-std::optional<Edit> suggested(const LoadedModel& loaded, const std::string& path) {
+std::optional<Edit> suggested(const LoadedModel& loaded, const std::string& path,
+                              Continuity continuity = Continuity::kMeasured) {
+  if (loaded.patches.patches.empty()) return std::nullopt;
+  SuggestionOptions options;
+  options.continuity = continuity;
   try {
-    return suggest_edit(loaded.patches, loaded.surroundings);
+    return suggest_edit(loaded.patches, loaded.surroundings, options);
   } catch (const InputError& error) {
     throw error.in_file(path);
   }
@@ -67,16 +71,15 @@ int run_suggest(const SuggestOptions& options, const Common& common) {
   ShapeMeasures measures;
   measures.close = parse_close(options.close);
   LoadedModel loaded = load_model(options.model, common, {}, measures);
-  std::optional<Edit> edit;
-  if (!loaded.patches.patches.empty()) edit = suggested(loaded, options.model);
+  std::optional<Edit> edit = suggested(loaded, options.model);
   constexpr size_t kMostConversions = 4;
   const std::vector<std::string> candidates = convertible_faces(loaded);
   for (size_t k = 0; !edit && k < candidates.size() && k < kMostConversions; ++k) {
     const LoadedModel converted = load_model(options.model, common, {candidates[k]}, measures);
-    if (!converted.patches.patches.empty()) {
-      edit = suggested(converted, options.model);
-    }
+    edit = suggested(converted, options.model);
   }
+  // Faces of degree 1 bend at knot lines only.
+  if (!edit) edit = suggested(loaded, options.model, Continuity::kC0);
   if (!edit) {
     const std::string why = why_nothing_is_free(loaded, candidates);
     refuse(options.model + ": refused: " + why);
@@ -90,6 +93,9 @@ int run_suggest(const SuggestOptions& options, const Common& common) {
   }
   write_file(options.output, text);
   print(common, "edits: " + options.output);
+  if (edit->continuity == Continuity::kC0) {
+    print(common, "keeps positions only (\"continuity\": \"C0\"): nothing is free without creases");
+  }
   print_json(common, Value::object().set("outcome", "done").set("edits", options.output));
   return kExitDone;
 }

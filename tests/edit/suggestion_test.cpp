@@ -51,6 +51,26 @@ TEST(Suggestion, ConvertedBodiesStaySmooth) {
   }
 }
 
+// Faces of degree 1 bend at knot lines only: nothing is free between fixed corners but creases.
+TEST(Suggestion, CreasesOnlyWhereTheyAreAllowed) {
+  PatchModel cube = testing::make_cube_model(1, 1);
+  for (const Patch& patch : cube.patches) {
+    for (int point : patch.points) cube.fixed_points.emplace_back(point, "held");
+  }
+  cube = prepared(cube);
+  SuggestionOptions options;
+  options.most_spans = 12;
+  EXPECT_FALSE(suggest_edit(cube, {}, options).has_value());
+  options.continuity = Continuity::kC0;
+  const std::optional<Edit> edit = suggest_edit(cube, {}, options);
+  ASSERT_TRUE(edit.has_value());
+  EXPECT_EQ(edit->continuity, Continuity::kC0);
+  EditSession session(cube);
+  const Certificate done = session.apply(*edit);
+  EXPECT_EQ(done.outcome, Outcome::kDone) << done.reason;
+  EXPECT_TRUE(done.volume.kept);
+}
+
 TEST(Suggestion, SaysWhenEverythingIsLocked) {
   PatchModel cube = prepared(testing::make_cube_model(3, 4));
   for (size_t i = 0; i < cube.points.size(); ++i) cube.lock(static_cast<int>(i), "fixed", false);

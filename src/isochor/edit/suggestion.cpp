@@ -87,6 +87,7 @@ std::optional<Edit> try_patch(const PatchModel& model, const Surroundings& surro
                               int spans, const SuggestionOptions& options) {
   Edit edit;
   edit.name = "pull the freest place";
+  edit.continuity = options.continuity;
   const Patch& patch = model.patches[static_cast<size_t>(q)];
   Move move;
   move.place.patch = patch.handle;
@@ -97,7 +98,9 @@ std::optional<Edit> try_patch(const PatchModel& model, const Surroundings& surro
     edit.moves = {move};
   }
   const PatchModel refined = refined_for(model, edit);
-  const DisplacementSpace space(refined, {});
+  DisplacementSpace::Options kept;
+  kept.continuity = options.continuity;
+  const DisplacementSpace space(refined, kept);
   const FreePlace place = freest_place(refined, space, q);
   if (place.rings < options.enough_rings) return std::nullopt;
   constexpr int kMostRings = 6;

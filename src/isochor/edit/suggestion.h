@@ -14,6 +14,7 @@ struct SuggestionOptions {
   double relative_pull = 0.01;  // length of the pull over the model's diagonal
   int enough_rings = 3;         // free coefficients on every side that make a place good
   int most_spans = 96;          // never refine a patch beyond this
+  Continuity continuity = Continuity::kMeasured;  // what the edit keeps; C0 may make creases
 };
 
 // An edit that pulls the freest place outwards with the volume kept; patches are tried from the
