@@ -79,6 +79,20 @@ TEST(Findings, NameEntitiesOfTheFile) {
   EXPECT_EQ(invalid[1].text, "face:20: not there");
 }
 
+TEST(Findings, WhatAReaderDidIsNoFaultWhatItLostIs) {
+  CheckedModel model = sound_cube();
+  model.import_warnings = {"sewn within 1e-06"};
+  const auto warned = findings_of(model);
+  ASSERT_EQ(warned.size(), 1u);
+  EXPECT_EQ(warned[0].kind, "import");
+  EXPECT_EQ(warned[0].severity, Severity::kWarning);
+  EXPECT_EQ(warned[0].text, "sewn within 1e-06");
+  model.import_faults = {"face lost"};
+  const auto found = findings_of(model);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].severity, Severity::kFault);
+}
+
 TEST(Findings, ValuesAreBeyondTheirLimits) {
   CheckedModel model = sound_cube();
   model.volume = -1.0;
