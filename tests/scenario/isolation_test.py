@@ -107,7 +107,10 @@ class Isolation(unittest.TestCase):
 
     def bars(self, *words):
         """What is drawn on a terminal: a list of (filled cells or None, words after the bar)."""
-        ours, theirs = pty.openpty()
+        try:
+            ours, theirs = pty.openpty()
+        except OSError as error:
+            self.skipTest(f"this machine has no terminals: {error}")
         process = subprocess.Popen([ISOCHOR, *map(str, words)], cwd=WORK, stderr=theirs,
                                    stdout=subprocess.DEVNULL)
         os.close(theirs)
