@@ -167,6 +167,7 @@ TEST(Follow, FacesThatShareNoCurveOrMeetSmoothlyAreErrors) {
 struct Measured {
   int calls = 0;
   double slip = 0.0;
+  double tolerance = 0.0;  // of the last call
 };
 Surroundings around(Measured* measured) {
   Surroundings surroundings;
@@ -175,7 +176,7 @@ Surroundings around(Measured* measured) {
                                     double tolerance) {
     ++measured->calls;
     EXPECT_EQ(moved, (std::vector<bool>{true, true}));
-    EXPECT_EQ(tolerance, 1e-5);
+    measured->tolerance = tolerance;
     const double volume = 5.0 + VolumeForm(model).value(model.points) + measured->slip;
     return MeasuredVolume{{volume, 1e-15}, ""};
   };
@@ -196,6 +197,7 @@ TEST(Follow, TheSessionMakesUpForTheMeasuredVolume) {
   const Certificate certificate = session.apply(pull_across());
   ASSERT_EQ(certificate.outcome, Outcome::kDone) << certificate.reason;
   EXPECT_EQ(measured.calls, 1);
+  EXPECT_EQ(measured.tolerance, 1e-5);
   EXPECT_GT(std::abs(certificate.volume_of_followers), 1e-4);
   EXPECT_TRUE(certificate.volume.kept);
   EXPECT_LE(certificate.moves[0].error, 1e-13) << "the point stays where it was asked to be";
@@ -205,6 +207,22 @@ TEST(Follow, TheSessionMakesUpForTheMeasuredVolume) {
   for (const SharedTrim& trim : model.shared_trims) {
     EXPECT_EQ(trim.released, (std::array<bool, 2>{false, false}));
   }
+}
+
+TEST(Follow, TrimsOfEarlierEditsMayStayAsFarApartAsThoseAllowed) {
+  Measured measured;
+  EditSession session(two_sheets(), around(&measured));
+  Edit loose = pull_across();
+  loose.follow.tolerance = 1e-3;
+  ASSERT_EQ(session.apply(loose).outcome, Outcome::kDone);
+  EXPECT_EQ(measured.tolerance, 1e-3);
+  Certificate tight = session.apply(pull_across());
+  ASSERT_EQ(tight.outcome, Outcome::kDone) << tight.reason;
+  EXPECT_EQ(measured.tolerance, 1e-3);
+  ASSERT_TRUE(session.undo());
+  ASSERT_TRUE(session.undo());
+  ASSERT_EQ(session.apply(pull_across()).outcome, Outcome::kDone);
+  EXPECT_EQ(measured.tolerance, 1e-5);
 }
 
 TEST(Follow, AnUndoneSessionIsAsBefore) {

@@ -171,6 +171,23 @@ TopoDS_Solid lens() {
   return solid_of({side, cap(side, low, false), cap(side, high, true)});
 }
 
+gp_Trsf some_pose() {
+  gp_Trsf pose;
+  pose.SetRotation(gp_Ax1(gp_Pnt(1, 2, 3), gp_Dir(1, -2, 0.5)), 1.1);
+  pose.SetTranslationPart(gp_Vec(30, -20, 10));
+  return pose;
+}
+
+Vec3 posed(const gp_Trsf& pose, const Vec3& at, bool vector) {
+  gp_XYZ p(at.x(), at.y(), at.z());
+  if (vector) {
+    p.Multiply(pose.VectorialPart());
+  } else {
+    pose.Transforms(p);
+  }
+  return {p.X(), p.Y(), p.Z()};
+}
+
 internal::Document document_of(const TopoDS_Shape& shape, const std::string& unit) {
   internal::Document document;
   document.unit = internal::unit_of_name(unit);

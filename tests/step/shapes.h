@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "isochor/base/vec3.h"
 #include "isochor/step/document.h"
 
 namespace isochor::shapes {
@@ -29,6 +30,10 @@ TopoDS_Solid cylinder(double radius = 0.5, double height = 2.0);
 
 // A lens around z between two planar caps: its side is a torus whose tube is wider than its hole.
 TopoDS_Solid lens();
+
+// A turn and a shift without round numbers, and where it takes a point or a vector.
+gp_Trsf some_pose();
+Vec3 posed(const gp_Trsf& pose, const Vec3& at, bool vector);
 
 // A document as a reader would give it.
 internal::Document document_of(const TopoDS_Shape& shape, const std::string& unit = "mm");

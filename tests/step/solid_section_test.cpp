@@ -86,18 +86,8 @@ TEST(SolidSection, ClosedForms) {
 }
 
 TEST(SolidSection, PosesMoveTheSectionAlong) {
-  gp_Trsf pose;
-  pose.SetRotation(gp_Ax1(gp_Pnt(1, 2, 3), gp_Dir(1, -2, 0.5)), 1.1);
-  pose.SetTranslationPart(gp_Vec(30, -20, 10));
-  const auto moved = [&](const Vec3& p, bool vector) {
-    gp_XYZ at(p.x(), p.y(), p.z());
-    if (vector) {
-      at.Multiply(pose.VectorialPart());
-    } else {
-      pose.Transforms(at);
-    }
-    return Vec3(at.X(), at.Y(), at.Z());
-  };
+  const gp_Trsf pose = shapes::some_pose();
+  const auto moved = [&](const Vec3& p, bool vector) { return shapes::posed(pose, p, vector); };
   for (const Cut& cut : cuts()) {
     const TopoDS_Shape shape = BRepBuilderAPI_Transform(cut.shape, pose, true).Shape();
     const Vec3 normal = moved(cut.normal, true);

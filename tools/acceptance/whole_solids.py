@@ -16,7 +16,8 @@ relative to the volume.
 OpenCASCADE's tolerance is its own estimate and no bound. Its result counts as converged up to the change
 between its last two tolerances. Where ours is farther away than that and our bound, the faces are
 compared one by one, and those that differ are integrated a third time by brute force. A disagreement is
-settled when that settles every such face; exit status 1 when one is ours or unexplained.
+settled when that settles every such face. Where brute force does not converge, but our three axes agree to
+rounding, it is called NOT SETTLED and does not fail. Exit status 1 when a disagreement is ours or unexplained.
 """
 import collections
 import resource

@@ -1,4 +1,5 @@
 // The second half of an edit that moves trimming curves.
+#include <algorithm>
 #include <utility>
 
 #include "isochor/edit/edit_session_state.h"
@@ -55,7 +56,9 @@ void EditSession::State::finish_followed(const std::vector<Vec3>& points,
   after = with_locked_trims(std::move(after));
   std::vector<bool> moved = fill_motion(after.patches, followed.rest.points, after.points);
   for (size_t q = 0; q < moved.size(); ++q) moved[q] = moved[q] || now.moved_patches[q];
-  const MeasuredVolume measured = surroundings.measure(after, moved, edit.follow.tolerance);
+  // Trims that earlier edits moved may have parted by as much as those allowed.
+  const double tolerance = std::max(now.trim_tolerance, edit.follow.tolerance);
+  const MeasuredVolume measured = surroundings.measure(after, moved, tolerance);
   if (!measured.refusal.empty()) return fail(Outcome::kRefused, measured.refusal);
   certificate.volume_of_followers = measured.volume.value - total();
   Bounded change{certificate.volume_of_followers, measured.volume.bound};
@@ -82,6 +85,7 @@ void EditSession::State::finish_followed(const std::vector<Vec3>& points,
   certificate.joins = skin.joins;
   certificate.skin.change = skin.change;
   take_volume(change, std::move(after));
+  active->candidate.trim_tolerance = tolerance;
 }
 
 }  // namespace isochor

@@ -23,6 +23,7 @@ struct EditSession::State {
     double reference = 0.0;  // the volume that "keep" means
     double excess = 0.0;     // the model's volume minus the reference, from exact changes
     std::vector<bool> moved_patches;
+    double trim_tolerance = 0.0;  // how far faces may have parted at the trims moved so far
   };
   struct Active {
     Edit edit;

@@ -306,11 +306,13 @@ void follow_one(int follower, const std::set<int>& followers, const Follow& foll
       return;
     }
     if (round == kMostRounds || patch().points.size() > kMostPoles) {
-      state.refusal = record.patch + " cannot follow within " + number(follow.tolerance) +
-                      ": with " + std::to_string(record.poles_after) +
-                      " poles it still misses the moved trimming curve by " +
-                      number(record.deviation) +
-                      "; state a larger tolerance, move farther from its other edges, or move less";
+      const bool waves = record.deviation <= limit;
+      state.refusal =
+          record.patch + " cannot follow within " + number(follow.tolerance) + ": with " +
+          std::to_string(record.poles_after) + " poles it still " +
+          (waves ? "moves farther than the trimming curve, by up to " + number(record.max_distance)
+                 : "misses the moved trimming curve by " + number(record.deviation)) +
+          "; state a larger tolerance, move farther from its other edges, or move less";
       return;
     }
     const bool waves = record.deviation <= limit;

@@ -4,7 +4,7 @@
 // whose parameter curves c_F(t), c_G(t) stay. G's displacement D_G is to satisfy
 // D_G(c_G(t)) = D_F(c_F(t)). That has no exact solution in a spline space, so D_G is the least
 // squares fit at many places t (the patches' `along`), damped by the roughness of D_G; then
-// the spans that miss by more than half of the tolerance are halved, until none does.
+// the spans that miss by more than a quarter of the tolerance are halved, until none does.
 //
 // The energy is that of the displacement, so the details of G survive (Boier-Martin, Ronfard,
 // Bernardini 2005).

@@ -330,6 +330,7 @@ void Builder::share_trim(size_t edge, const EdgeSite& a, const EdgeSite& b) {
   if (trim.patches[0] < 0 || trim.patches[1] < 0 || trim.patches[0] == trim.patches[1]) return;
   trim.smoothness = facts_[edge].smoothness;
   trace_shared_trim(table_, sites, trim);
+  if (trim.along[0].empty() || trim.along[1].empty()) return;  // a face without its curve
   model_.shared_trims.push_back(std::move(trim));
   trim_edges_.push_back(edge);
 }

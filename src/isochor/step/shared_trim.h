@@ -8,8 +8,8 @@
 
 namespace isochor::internal {
 
-// Fills `along` and `boxes`: places at equal fractions of both parameter curves, dense enough to
-// see every wave of either surface.
+// Fills `along` and `boxes`; nothing for a face that has no parameter curve of the edge. Places at
+// equal fractions of both parameter curves, dense enough to see every wave of either surface.
 void trace_shared_trim(const BrepTable& table, const std::array<EdgeSite, 2>& sites,
                        SharedTrim& trim);
 
