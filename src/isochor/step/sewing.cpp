@@ -34,24 +34,49 @@ double diagonal_of(const TopoDS_Shape& shape) {
   return box.IsVoid() ? 0.0 : std::sqrt(box.SquareExtent());
 }
 
-// Edges that one face uses once, and the others.
-struct Edges {
-  std::vector<TopoDS_Edge> free, shared;
+// An edge and a face that uses it, with the edge's ends and middle.
+struct EdgeUse {
+  TopoDS_Face face;
+  std::array<gp_Pnt, 3> places;
 
-  explicit Edges(const TopoDS_Shape& shape) {
-    TopTools_IndexedDataMapOfShapeListOfShape faces_of;
-    TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of);
-    for (int k = 1; k <= faces_of.Extent(); ++k) {
-      const TopoDS_Edge& edge = TopoDS::Edge(faces_of.FindKey(k));
-      if (BRep_Tool::Degenerated(edge)) continue;
-      const bool alone = faces_of(k).Extent() == 1 &&
-                         !BRep_Tool::IsClosed(edge, TopoDS::Face(faces_of(k).First()));
-      (alone ? free : shared).push_back(edge);
-    }
+  EdgeUse(const TopoDS_Edge& edge, TopoDS_Face by) : face(std::move(by)) {
+    const BRepAdaptor_Curve curve(edge);
+    const double a = curve.FirstParameter(), b = curve.LastParameter();
+    places = {curve.Value(a), curve.Value(0.5 * (a + b)), curve.Value(b)};
   }
 
-  int free_count() const { return static_cast<int>(free.size()); }
+  double x() const { return places[1].X(); }
+
+  // As short as the tolerance, as far as the middle tells.
+  bool within(double tolerance) const { return places[0].Distance(places[1]) <= tolerance; }
+
+  bool along(const EdgeUse& other, double tolerance) const {
+    const auto near = [&](int k, int l) {
+      return places[static_cast<size_t>(k)].Distance(other.places[static_cast<size_t>(l)]) <=
+             tolerance;
+    };
+    return near(1, 1) && ((near(0, 0) && near(2, 2)) || (near(0, 2) && near(2, 0)));
+  }
 };
+
+// Calls use(edge, face, free) for every edge that has a length; `free`: one face uses it, once.
+template <typename Use>
+void for_each_edge(const TopoDS_Shape& shape, const Use& use) {
+  TopTools_IndexedDataMapOfShapeListOfShape faces_of;
+  TopExp::MapShapesAndAncestors(shape, TopAbs_EDGE, TopAbs_FACE, faces_of);
+  for (int k = 1; k <= faces_of.Extent(); ++k) {
+    const TopoDS_Edge& edge = TopoDS::Edge(faces_of.FindKey(k));
+    if (BRep_Tool::Degenerated(edge) || faces_of(k).IsEmpty()) continue;
+    const TopoDS_Face& face = TopoDS::Face(faces_of(k).First());
+    use(edge, face, faces_of(k).Extent() == 1 && !BRep_Tool::IsClosed(edge, face));
+  }
+}
+
+int free_edges(const TopoDS_Shape& shape) {
+  int count = 0;
+  for_each_edge(shape, [&](const TopoDS_Edge&, const TopoDS_Face&, bool free) { count += free; });
+  return count;
+}
 
 double largest_tolerance(const TopoDS_Shape& shape) {
   double largest = 0.0;
@@ -64,35 +89,44 @@ double largest_tolerance(const TopoDS_Shape& shape) {
   return largest;
 }
 
-// The ends and the middle of an edge.
-std::array<gp_Pnt, 3> places(const TopoDS_Edge& edge) {
-  const BRepAdaptor_Curve curve(edge);
-  const double a = curve.FirstParameter(), b = curve.LastParameter();
-  return {curve.Value(a), curve.Value(0.5 * (a + b)), curve.Value(b)};
-}
-
-// Whether an edge that stayed free runs where another edge does: a third face, or more, met there.
-bool third_face(const Edges& edges, double tolerance) {
-  const auto near = [&](const gp_Pnt& p, const gp_Pnt& q) { return p.Distance(q) <= tolerance; };
-  const auto along = [&](const std::array<gp_Pnt, 3>& a, const std::array<gp_Pnt, 3>& b) {
-    return near(a[1], b[1]) &&
-           ((near(a[0], b[0]) && near(a[2], b[2])) || (near(a[0], b[2]) && near(a[2], b[0])));
-  };
-  std::vector<std::array<gp_Pnt, 3>> shared;
-  for (const TopoDS_Edge& edge : edges.shared) shared.push_back(places(edge));
-  return std::any_of(edges.free.begin(), edges.free.end(), [&](const TopoDS_Edge& edge) {
-    const auto own = places(edge);
-    return own[0].Distance(own[1]) > tolerance &&
-           std::any_of(shared.begin(), shared.end(), [&](const auto& b) { return along(own, b); });
-  });
-}
-
 // A strip no wider than the tolerance.
 bool has_no_area(const TopoDS_Face& face, double tolerance) {
   GProp_GProps area, length;
   BRepGProp::SurfaceProperties(face, area);
   BRepGProp::LinearProperties(face, length);
   return std::abs(area.Mass()) <= 0.5 * tolerance * length.Mass();
+}
+
+// Whether a free edge runs within the tolerance of a shared one, or of two other free ones: three
+// faces that have an area, or more, meet there.
+bool third_face(const TopoDS_Shape& shape, double tolerance) {
+  struct Run {
+    EdgeUse use;
+    bool free;
+  };
+  std::vector<Run> runs;
+  for_each_edge(shape, [&](const TopoDS_Edge& edge, const TopoDS_Face& face, bool free) {
+    EdgeUse use(edge, face);
+    if (!use.within(tolerance)) runs.push_back({std::move(use), free});
+  });
+  std::sort(runs.begin(), runs.end(),
+            [](const Run& a, const Run& b) { return a.use.x() < b.use.x(); });
+  const auto sum_along = [&](const EdgeUse& own, const auto& faces) {
+    const auto first = std::lower_bound(runs.begin(), runs.end(), own.x() - tolerance,
+                                        [](const Run& run, double x) { return run.use.x() < x; });
+    int sum = 0;
+    for (auto it = first; it != runs.end() && it->use.x() <= own.x() + tolerance; ++it) {
+      if (it->use.along(own, tolerance)) sum += faces(*it);
+    }
+    return sum;
+  };
+  const auto faces = [](const Run& run) { return run.free ? 1 : 2; };
+  const auto faces_with_area = [&](const Run& run) {
+    return run.free && has_no_area(run.use.face, tolerance) ? 0 : faces(run);
+  };
+  return std::any_of(runs.begin(), runs.end(), [&](const Run& run) {
+    return run.free && sum_along(run.use, faces) >= 3 && sum_along(run.use, faces_with_area) >= 3;
+  });
 }
 
 std::string handle_of(int face) { return "face:" + std::to_string(face + 1); }
@@ -138,6 +172,8 @@ class Sewer {
       }
       seen.Bind(own, f);
     }
+    // Sewing takes long; this would decline it afterwards.
+    if (third_face(document_.shape, tolerance_)) return kThirdFace;
     return "";
   }
 
@@ -156,7 +192,7 @@ class Sewer {
     if (kept.IsEmpty()) return false;
     sewing.Perform();
     const TopoDS_Shape sewn = sewing.SewedShape();
-    if (sewn.IsNull() || Edges(sewn).free_count() >= account_.free_edges_before) return false;
+    if (sewn.IsNull() || free_edges(sewn) >= account_.free_edges_before) return false;
     TopTools_DataMapOfShapeInteger numbers;
     for (int f = 0; f < document_.face_count(); ++f) {
       TopoDS_Shape now = document_.face(f);
@@ -246,12 +282,11 @@ class Sewer {
   }
 
   std::string objection() {
-    const Edges edges(shape_);
-    account_.free_edges_after = edges.free_count();
+    account_.free_edges_after = free_edges(shape_);
     // Edges that only a large tolerance holds together are not one edge.
     const double allowed = std::max(largest_tolerance(document_.shape), 2.0 * tolerance_);
     if (largest_tolerance(shape_) > allowed) return "only a larger tolerance would join the edges";
-    if (third_face(edges, 2.0 * tolerance_)) return "three or more faces meet along an edge";
+    if (third_face(shape_, 2.0 * tolerance_)) return kThirdFace;
     for (const Group& group : groups_) {
       for (const NumberedFace& face : group) {
         TopLoc_Location was, is;
@@ -288,6 +323,8 @@ class Sewer {
     index_document(document_);
   }
 
+  static constexpr const char* kThirdFace = "three or more faces meet along an edge";
+
   Document& document_;
   double tolerance_;
   TopoDS_Shape shape_;
@@ -300,7 +337,7 @@ class Sewer {
 void sew(Document& document) {
   TopExp_Explorer solid(document.shape, TopAbs_SOLID);
   if (solid.More()) return;
-  const int free = Edges(document.shape).free_count();
+  const int free = free_edges(document.shape);
   if (free == 0) return;
   tell_progress(1.0, "sewing");
   try {
