@@ -196,10 +196,32 @@ TEST(Bridge, ProgressArrivesInOrderAndNeverGoesBack) {
   EXPECT_EQ(fractions.back(), 1.0);
   EXPECT_EQ(steps.front(), "reading");
   EXPECT_EQ(steps.back(), "measuring");
+  EXPECT_EQ(std::count(fractions.begin(), fractions.end(), 1.0), 1);
   EXPECT_NE(std::find(steps.begin(), steps.end(), "reading again"), steps.end());
-  // Half a percent is the least that is worth a message.
-  EXPECT_LE(fractions.size(), 106u);
-  EXPECT_GE(fractions.size(), 50u);
+}
+
+TEST(Bridge, OnlyProgressThatSomebodyCouldSeeIsWorthAMessage) {
+  int heard = 0;
+  internal::set_progress_sink([&](double, std::string_view) { ++heard; });
+  const auto begin = std::chrono::steady_clock::now();
+  for (int k = 0; k < 100000; ++k) internal::tell_progress(1e-5 * k, "reading");
+  const auto time = std::chrono::steady_clock::now() - begin;
+  EXPECT_LE(heard, 1 + time / std::chrono::milliseconds(10));
+  heard = 0;
+  for (int k = 0; k < 5; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(12));
+    internal::tell_progress(0.999, "reading");
+    internal::tell_progress(0.9991 + 1e-5 * k, "reading");
+  }
+  EXPECT_LE(heard, 1) << "less than half a percent is nothing, however long it takes";
+  internal::set_progress_sink([&](double, std::string_view) { ++heard; });
+  heard = 0;
+  for (int k = 0; k < 5; ++k) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(12));
+    internal::tell_progress(0.1 * k, "reading");
+  }
+  EXPECT_EQ(heard, 5);
+  internal::set_progress_sink({});
 }
 
 TEST(Bridge, ProgressOutsideAChildGoesNowhere) {

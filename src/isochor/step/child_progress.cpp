@@ -1,17 +1,22 @@
 #include "isochor/step/child_progress.h"
 
 #include <algorithm>
+#include <chrono>
 #include <string>
 
 namespace isochor::internal {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 constexpr double kLeastAdvance = 0.005;
+constexpr std::chrono::milliseconds kLeastPause(10);
 
 struct Teller {
   ProgressSink sink;
   double begin = 0.0, end = 1.0;  // of the innermost part
   double told = -1.0;
+  Clock::time_point when;
   std::string step;
 };
 
@@ -27,8 +32,11 @@ void tell_progress(double fraction, std::string_view step) {
   if (!t.sink) return;
   const double inside = std::clamp(fraction, 0.0, 1.0);
   const double whole = std::max(t.told, t.begin + inside * (t.end - t.begin));
-  if (step == t.step && whole < t.told + kLeastAdvance) return;
+  if (step == t.step && whole < 1.0) {
+    if (whole < t.told + kLeastAdvance || Clock::now() < t.when + kLeastPause) return;
+  }
   t.told = whole;
+  t.when = Clock::now();
   t.step = step;
   t.sink(whole, step);
 }

@@ -6,7 +6,7 @@
 //
 // Laws:
 //  (1) fractions never go back, and lie in [0, 1];
-//  (2) few are sent: a new step, or half a percent more.
+//  (2) few are sent: a new step, the end, or half a percent more after a hundredth of a second.
 #pragma once
 
 #include <functional>

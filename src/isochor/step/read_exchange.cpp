@@ -17,12 +17,12 @@
 #include <XSControl_TransferReader.hxx>
 #include <algorithm>
 #include <map>
-#include <sstream>
 
 #include "isochor/base/error.h"
 #include "isochor/step/exchange.h"
 #include "isochor/step/occt_progress.h"
 #include "isochor/step/part21.h"
+#include "isochor/step/step_loader.h"
 #include "isochor/step/step_unit.h"
 
 namespace isochor::internal {
@@ -52,14 +52,12 @@ IFSelect_ReturnStatus parse_step(Document& document, STEPControl_Reader& reader)
     throw InputError(document.path, "", "is not a STEP file: 'ISO-10303-21' is missing");
   }
   document.schema = schema_of(text);
-  if (start == 0) return reader.ReadFile(document.path.c_str());
   // A byte order mark is too common to mention; anything else may be a sign of damage.
-  if (text.compare(0, start, "\xEF\xBB\xBF") != 0) {
+  if (start > 0 && text.compare(0, start, "\xEF\xBB\xBF") != 0) {
     document.account.junk_bytes = static_cast<int>(start);
     document.notices.push_back("skipped " + std::to_string(start) + " bytes before 'ISO-10303-21'");
   }
-  std::istringstream in(text.substr(start));
-  return reader.ReadStream(document.path.c_str(), in);
+  return load_step(reader, document.path, std::move(text), start);
 }
 
 LengthUnit iges_unit(const IGESData_IGESModel& model) {
