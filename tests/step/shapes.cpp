@@ -7,6 +7,7 @@
 #include <BRepBuilderAPI_MakeWire.hxx>
 #include <BRepBuilderAPI_Sewing.hxx>
 #include <BRepLib.hxx>
+#include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom_ToroidalSurface.hxx>
@@ -155,6 +156,13 @@ TopoDS_Shape holed_cube() {
   const gp_Ax2 axis(gp_Pnt(0.5, 0.5, -1.0), gp_Dir(0, 0, 1));
   return BRepAlgoAPI_Cut(bicubic_cube(1.0, 12), BRepPrimAPI_MakeCylinder(axis, 0.11, 3.0).Solid())
       .Shape();
+}
+
+TopoDS_Shape holed_plate() {
+  const TopoDS_Shape box = BRepPrimAPI_MakeBox(gp_Pnt(-2, -3, -1), 4, 6, 2).Shape();
+  const TopoDS_Shape hole =
+      BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0.3, 0.4, -5), gp::DZ()), 0.7, 10).Shape();
+  return BRepAlgoAPI_Cut(box, hole).Shape();
 }
 
 TopoDS_Solid cylinder(double radius, double height) {

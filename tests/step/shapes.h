@@ -26,6 +26,9 @@ TopoDS_Solid dome();
 // bicubic_cube with a round hole through its top and bottom faces.
 TopoDS_Shape holed_cube();
 
+// A plate 4 x 6 x 2 about the origin with a round hole of radius 0.7 at (0.3, 0.4).
+TopoDS_Shape holed_plate();
+
 TopoDS_Solid cylinder(double radius = 0.5, double height = 2.0);
 
 // A lens around z between two planar caps: its side is a torus whose tube is wider than its hole.

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -37,14 +36,6 @@ struct Part {
   Vec3 centroid;
 };
 
-// A plate 4 x 6 x 2 about the origin with a round hole at (0.3, 0.4).
-TopoDS_Shape holed_plate() {
-  const TopoDS_Shape box = BRepPrimAPI_MakeBox(gp_Pnt(-2, -3, -1), 4, 6, 2).Shape();
-  const TopoDS_Shape hole =
-      BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0.3, 0.4, -5), gp::DZ()), 0.7, 10).Shape();
-  return BRepAlgoAPI_Cut(box, hole).Shape();
-}
-
 std::vector<Part> parts() {
   const double hole = kPi * 0.49;
   return {
@@ -63,9 +54,9 @@ std::vector<Part> parts() {
        Vec3(0, -0.75 * 9 / 5, 0)},
       {"half a torus", BRepPrimAPI_MakeTorus(5, 1.5).Shape(), Vec3(0, 0, 1), 0.0,
        kPi * kPi * 5 * 2.25, Vec3(0, 0, -4 * 1.5 / (3 * kPi))},
-      {"holed plate", holed_plate(), Vec3(0, 0, 1), 0.25, 1.25 * (24 - hole),
+      {"holed plate", shapes::holed_plate(), Vec3(0, 0, 1), 0.25, 1.25 * (24 - hole),
        Vec3(-0.3, -0.4, 0) * hole / (24 - hole) + Vec3(0, 0, -0.375)},
-      {"holed plate, through the hole", holed_plate(), Vec3(1, 0, 0), 0.3, 2.3 * 12 - hole,
+      {"holed plate, through the hole", shapes::holed_plate(), Vec3(1, 0, 0), 0.3, 2.3 * 12 - hole,
        Vec3((2.3 * 12 * -0.85 - hole * (0.3 - 4 * 0.7 / (3 * kPi))) / (27.6 - hole),
             -0.4 * hole / (27.6 - hole), 0)},
   };

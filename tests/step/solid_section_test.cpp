@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <BRepAlgoAPI_Cut.hxx>
 #include <BRepBuilderAPI_NurbsConvert.hxx>
 #include <BRepBuilderAPI_Transform.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
@@ -33,14 +32,6 @@ struct Cut {
   Vec3 centroid;
 };
 
-// A plate 4 x 6 x 2 about the origin with a round hole at (0.3, 0.4).
-TopoDS_Shape holed_plate() {
-  const TopoDS_Shape box = BRepPrimAPI_MakeBox(gp_Pnt(-2, -3, -1), 4, 6, 2).Shape();
-  const TopoDS_Shape hole =
-      BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0.3, 0.4, -5), gp::DZ()), 0.7, 10).Shape();
-  return BRepAlgoAPI_Cut(box, hole).Shape();
-}
-
 std::vector<Cut> cuts() {
   const double hole = kPi * 0.49;
   const double tilt = std::sqrt(0.5);
@@ -63,9 +54,9 @@ std::vector<Cut> cuts() {
        4 * kPi * 5 * std::sqrt(2.25 - 0.16), Vec3(0, 0, 0.4)},
       {"torus, two disks", BRepPrimAPI_MakeTorus(5, 1.5).Shape(), Vec3(0, 1, 0), 0.0,
        2 * kPi * 2.25, Vec3::Zero()},
-      {"holed plate across", holed_plate(), Vec3(0, 0, 1), 0.25, 24 - hole,
+      {"holed plate across", shapes::holed_plate(), Vec3(0, 0, 1), 0.25, 24 - hole,
        Vec3(-0.3, -0.4, 0) * hole / (24 - hole) + Vec3(0, 0, 0.25)},
-      {"holed plate through the hole", holed_plate(), Vec3(1, 0, 0), 0.3, 12 - 2 * 1.4,
+      {"holed plate through the hole", shapes::holed_plate(), Vec3(1, 0, 0), 0.3, 12 - 2 * 1.4,
        Vec3(0.3, -0.4 * 2.8 / 9.2, 0)},
   };
 }

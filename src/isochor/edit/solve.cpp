@@ -283,12 +283,17 @@ class Solver {
          problem_.volume_free ? constraint_names() : std::vector<std::string>{"volume"});
   }
 
-  void isotropic() {
+  // The smoothest displacement that meets the positions; false when none does.
+  bool meet_positions() {
     const ConstraintSystem& positions = positional_system(7);
-    if (!accept(positions)) return;
+    if (!accept(positions)) return false;
     positions.add_to(positions.particular(), 1.0, result_.delta);
     result_.positional_energy = energy(result_.delta);
-    if (problem_.volume_free) return;
+    return true;
+  }
+
+  void isotropic() {
+    if (!meet_positions() || problem_.volume_free) return;
     const ConstraintSystem& correction = correction_system(7);
     const std::vector<Vec3> positional = result_.delta;
     const double missing = problem_.change - change_at(positional);
@@ -396,11 +401,7 @@ class Solver {
   }
 
   void taylor() {
-    const ConstraintSystem& positions = positional_system(7);
-    if (!accept(positions)) return;
-    positions.add_to(positions.particular(), 1.0, result_.delta);
-    result_.positional_energy = energy(result_.delta);
-    if (problem_.volume_free) return;
+    if (!meet_positions() || problem_.volume_free) return;
     const ConstraintSystem& correction = correction_system(7);
     const std::vector<Vec3> none(result_.delta.size(), Vec3::Zero());
     const std::vector<Vec3> full = gradient_at(none);
