@@ -89,7 +89,7 @@ TEST(BundledModels, AreWhatTheirGeneratorWrites) {
     EXPECT_TRUE(read_text(entry.path().string()) == read_text(kFolder + name)) << name;
     ++files;
   }
-  EXPECT_EQ(files, 10);
+  EXPECT_EQ(files, 11);
   fs::remove_all(folder);
 }
 
@@ -102,6 +102,11 @@ TEST(BundledModels, HaveTheDocumentedVolumes) {
   }
   EXPECT_EQ(exact_volume("cube.step").to_string(), "1");
   EXPECT_EQ(exact_volume("patchwork.step").to_string(), "1");
+}
+
+TEST(BundledModels, HalfAHullIsHalfOfTheHull) {
+  const Rational half = exact_volume("half_hull.step");
+  EXPECT_EQ((half + half).to_string(), exact_volume("hull.step").to_string());
 }
 
 // Second method: z dx dy by Gauss over the skins, and over the flat faces by Green's theorem.

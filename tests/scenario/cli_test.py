@@ -21,6 +21,8 @@ HULL = SOURCE / "data/step/hull.step"
 PATCHWORK = SOURCE / "data/step/patchwork.step"
 PULL = SOURCE / "data/edits/cube_figure4.json"
 HULL_PULL = SOURCE / "data/edits/hull_pull.json"
+HALF_HULL = SOURCE / "data/step/half_hull.step"
+HALF_HULL_PULL = SOURCE / "data/edits/half_hull_pull.json"
 
 
 def isochor(*words):
@@ -500,6 +502,20 @@ class Check(Scenario):
         self.expect(3, "volume", CUBE, "--below", "z<1", says="--below")
         self.expect(3, "volume", self.open_cube(), "--close", "x=0", "--close", "y=0", "--close=1,1,1,0", "--close=1,-1,2,3",
                     "--below", "z=0.5", says="close")
+
+    def test_half_a_hull_is_closed_by_the_planes_that_info_names(self):
+        opening = self.run_json("info", HALF_HULL)["opening"]
+        planes = re.findall(r'--close "?([^ "]+)', opening)
+        self.assertEqual(len(planes), 3, opening)
+        half = self.run_json("volume", HALF_HULL, *(f"--close={plane}" for plane in planes))
+        whole = self.run_json("volume", HULL)
+        self.assertAlmostEqual(2 * half["volume"] / whole["volume"], 1, delta=1e-12)
+        self.expect(0, "edit", HALF_HULL, HALF_HULL_PULL, "-o", "half.step", "--report", "half.json",
+                    leaves={"half.step", "half.json"})
+        report = json.loads((WORK / "half.json").read_text())
+        self.assertEqual(len(report["closed_by"]), 3)
+        after = self.run_json("volume", "half.step", *(f"--close={plane}" for plane in planes))
+        self.assertAlmostEqual(after["volume"] / half["volume"], 1, delta=1e-12)
 
     def test_planes_close_the_cube(self):
         option = self.run_json("check", self.open_cube(), code=1)["opening"].split(": ")[-1].split()[1]

@@ -147,4 +147,25 @@ std::string hull_step() {
   return step.text();
 }
 
+std::string half_hull_step() {
+  const Surface skin = starboard_surface();
+  StepText step("half hull", "Starboard skin of a ship hull, open at its flat ends", "METRE");
+  step.leave_open();
+  const int id = step.surface(skin);
+  const int last_u = skin.u_size() - 1, last_v = skin.v_size() - 1;
+  const int heel = step.vertex(skin.pole(0, 0)), foot = step.vertex(skin.pole(last_u, 0));
+  const int head = step.vertex(skin.pole(last_u, last_v)),
+            stern = step.vertex(skin.pole(0, last_v));
+  const auto side = [&](int from, int to, Side which, const Pcurve& pcurve) {
+    return step.edge(from, to, side_curve(skin, which), {pcurve});
+  };
+  step.face("starboard", id,
+            {{{side(heel, foot, Side::kVBegin, along_u(id, 0.0)), true},
+              {side(foot, head, Side::kUEnd, along_v(id, kAlong)), true},
+              {side(stern, head, Side::kVEnd, along_u(id, kUp)), false},
+              {side(heel, stern, Side::kUBegin, along_v(id, 0.0)), false}}},
+            kStarboard);
+  return step.text();
+}
+
 }  // namespace make_data

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
     write(folder + "fuselage.step", make_data::fuselage_step());
     write(folder + "fuselage12.step", make_data::fuselage12_step());
     write(folder + "hull.step", make_data::hull_step());
+    write(folder + "half_hull.step", make_data::half_hull_step());
     write(folder + "cube.step", make_data::cube_step());
     write(folder + "patchwork.step", make_data::patchwork_step());
     write(folder + "canopy.step", make_data::canopy_step());

@@ -22,6 +22,9 @@ std::string fuselage12_step();
 // Port and starboard skin, a transom at x = 0 and a deck that rises towards the bow.
 std::string hull_step();
 
+// Its starboard skin alone: open in the planes y = 0, x = 0 and z = 4.5 + x/32.
+std::string half_hull_step();
+
 // The unit cube: six bicubic patches of 15 x 15 poles at the Greville abscissae.
 std::string cube_step();
 std::string cube_json();

@@ -178,8 +178,11 @@ void StepText::face(const std::string& name, int surface,
 }
 
 int StepText::add_product() {
-  const int shell = add("CLOSED_SHELL(''," + refs(faces_) + ")");
-  const int solid = add("MANIFOLD_SOLID_BREP(" + quoted(name_) + "," + ref(shell) + ")");
+  const int shell =
+      add(std::string(open_ ? "OPEN_SHELL" : "CLOSED_SHELL") + "(''," + refs(faces_) + ")");
+  const int body =
+      open_ ? add("SHELL_BASED_SURFACE_MODEL(" + quoted(name_) + "," + refs({shell}) + ")")
+            : add("MANIFOLD_SOLID_BREP(" + quoted(name_) + "," + ref(shell) + ")");
   const int axes = add("AXIS2_PLACEMENT_3D(''," + ref(point(Vec3::Zero())) + "," +
                        ref(direction(Vec3::UnitZ())) + "," + ref(direction(Vec3::UnitX())) + ")");
   const int length = add("(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,." + unit_ + ".))");
@@ -191,8 +194,10 @@ int StepText::add_product() {
       add("(GEOMETRIC_REPRESENTATION_CONTEXT(3)GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT(" +
           refs({accuracy}) + ")GLOBAL_UNIT_ASSIGNED_CONTEXT(" + refs({length, angle, solid_angle}) +
           ")REPRESENTATION_CONTEXT('model','3D'))");
-  const int shape = add("ADVANCED_BREP_SHAPE_REPRESENTATION(" + quoted(name_) + "," +
-                        refs({axes, solid}) + "," + ref(context) + ")");
+  const std::string kind =
+      open_ ? "MANIFOLD_SURFACE_SHAPE_REPRESENTATION" : "ADVANCED_BREP_SHAPE_REPRESENTATION";
+  const int shape =
+      add(kind + "(" + quoted(name_) + "," + refs({axes, body}) + "," + ref(context) + ")");
   const int application = add("APPLICATION_CONTEXT('managed model based 3d engineering')");
   add("APPLICATION_PROTOCOL_DEFINITION('international standard',"
       "'ap242_managed_model_based_3d_engineering',2014," +

@@ -1,10 +1,11 @@
-// Writes one solid as a STEP file (ISO 10303-21, AP242), from plain geometry and topology.
+// Writes one solid, or an open skin, as a STEP file (ISO 10303-21, AP242), from plain geometry and
+// topology.
 //
 // Numbers are written with the shortest digits that read back as the same double. The text depends
 // on nothing but the calls: no time, no machine, no address.
 //
 // Use: vertices, then edges (a space curve and its pcurves), then faces (loops of edges), then
-// `text`. Every edge must be used twice, in opposite directions.
+// `text`. Every edge of a solid must be used twice, in opposite directions.
 #pragma once
 
 #include <array>
@@ -55,6 +56,9 @@ class StepText {
   void face(const std::string& name, int surface, const std::vector<std::vector<Use>>& loops,
             const Rgb& colour, bool reversed = false);
 
+  // The faces are a skin that encloses nothing.
+  void leave_open() { open_ = true; }
+
   // The whole file.
   std::string text() const;
 
@@ -76,6 +80,7 @@ class StepText {
   std::map<std::string, int> known_;
   std::vector<int> faces_;
   std::vector<Rgb> colours_;
+  bool open_ = false;
 };
 
 // The shortest STEP real that reads back as `value`.
