@@ -18,6 +18,7 @@
 #include "isochor/step/edge_measures.h"
 #include "isochor/step/entity_index.h"
 #include "isochor/step/flux.h"
+#include "isochor/step/self_intersections.h"
 #include "isochor/step/shape_facts.h"
 #include "isochor/step/solid_below.h"
 #include "isochor/step/solid_moments.h"
@@ -200,6 +201,7 @@ SolidModel document_model(const Document& document, const ReadOptions& options) 
   if (options.below && (model.facts.closed || !options.close.empty())) {
     model.below = shape_below(document.shape, *options.below, options.close);
   }
+  if (options.crossings) model.crossings = self_intersections(table, model.edges);
   return model;
 }
 

@@ -108,9 +108,18 @@ void transfer(Io& io, ImportAccount& f) {
      f.lost, f.unused, f.added_faces, f.no_area, f.repairs, f.failures, f.sewing);
 }
 template <typename Io>
+void transfer(Io& io, Crossing& f) {
+  io(f.face_a, f.face_b, f.at, f.depth, f.limit, f.one_body);
+}
+template <typename Io>
+void transfer(Io& io, CrossingsAccount& f) {
+  io(f.pairs, f.apart, f.neighbours, f.crossing, f.undecided, f.faces, f.faces_free,
+     f.faces_crossing, f.faces_undecided, f.found, f.undecided_pairs);
+}
+template <typename Io>
 void transfer(Io& io, SolidModel& f) {
   io(f.path, f.format, f.unit, f.schema, f.patches, f.faces, f.edges, f.facts, f.open_edges,
-     f.moments, f.section, f.below, f.import, f.notices);
+     f.moments, f.section, f.below, f.crossings, f.import, f.notices);
 }
 template <typename Io>
 void transfer(Io& io, EditedFacts& f) {

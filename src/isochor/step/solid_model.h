@@ -14,6 +14,7 @@
 
 #include "isochor/base/progress.h"
 #include "isochor/bspline/patch_model.h"
+#include "isochor/step/crossings_account.h"
 #include "isochor/step/import_account.h"
 #include "isochor/volume/below.h"
 #include "isochor/volume/closing.h"
@@ -87,10 +88,11 @@ struct SolidModel {
   std::vector<FaceFacts> faces;
   std::vector<EdgeFacts> edges;
   ShapeFacts facts;
-  std::vector<OpenEdge> open_edges;        // edges of one face only
-  std::optional<MomentIntegrals> moments;  // when asked for and the shape is closed
-  std::optional<Section> section;          // the same
-  std::optional<PartBelow> below;          // the same, or when planes close it
+  std::vector<OpenEdge> open_edges;           // edges of one face only
+  std::optional<MomentIntegrals> moments;     // when asked for and the shape is closed
+  std::optional<Section> section;             // the same
+  std::optional<PartBelow> below;             // the same, or when planes close it
+  std::optional<CrossingsAccount> crossings;  // when asked for
   ImportAccount import;
   std::vector<std::string> notices;  // repairs and warnings of the reader, in words
 };
@@ -106,6 +108,7 @@ struct ReadOptions {
   bool shared_trims = false;    // also the edges that patches share as trimming curves
   bool moments = false;         // also the moment integrals, which cost several times the volume
   bool entities = false;        // also the numbers of edges in a STEP file
+  bool crossings = false;       // also which faces cut through each other
   std::vector<double> section;  // also the section by this plane, NX, NY, NZ, H; or empty
   std::optional<ClosingPlane> below;  // also what lies below this plane
   // Planes that close the shape: fluxes, volume and moments are taken with a field that has no flux
