@@ -1,6 +1,7 @@
 #include "check_picture.h"
 
 #include <array>
+#include <set>
 
 #include "isochor/picture/edit_picture.h"
 #include "model_picture.h"
@@ -20,8 +21,10 @@ const std::array<EdgeClass, kClasses> kEdgeClasses = {
     {{"blue: smooth", {0.16, 0.42, 0.80}, 1.4},
      {"black: sharp", {0.13, 0.14, 0.16}, 1.6},
      {"orange: almost smooth", {0.93, 0.55, 0.05}, 3.2},
-     {"magenta: gap, tiny, fold or several faces", {0.72, 0.10, 0.68}, 4.0},
+     {"magenta: with a finding", {0.72, 0.10, 0.68}, 4.0},
      {"red: free", {0.86, 0.10, 0.10}, 4.4}}};
+
+constexpr double kStarArm = 0.03;  // of the diagonal
 
 size_t class_of(const CheckedEdge& edge, bool marked) {
   if (edge.uses == 1) return 4;
@@ -29,6 +32,20 @@ size_t class_of(const CheckedEdge& edge, bool marked) {
   if (!edge.measured) return 1;
   if (edge.smoothness == Smoothness::kSharp) return 1;
   return edge.smoothness == Smoothness::kAlmost ? 2 : 0;
+}
+
+// A star at every place where faces cut through each other.
+LineSet stars_at(const CheckedModel& subject) {
+  LineSet stars;
+  stars.colour = {0.05, 0.55, 0.20};
+  stars.width = 4.0;
+  const double arm = kStarArm * subject.diagonal;
+  for (const CheckedCrossing& crossing : subject.crossings) {
+    for (const Vec3 axis : {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()}) {
+      stars.add({crossing.at - arm * axis, crossing.at + arm * axis});
+    }
+  }
+  return stars;
 }
 
 }  // namespace
@@ -44,6 +61,14 @@ Image draw_check(const LoadedModel& loaded, const CheckedModel& subject,
     const bool edge = finding.edge >= 0 && finding.kind != "almost smooth";
     if (edge && finding.kind != "large tolerance") marked[static_cast<size_t>(finding.edge)] = 1;
   }
+  // Faces that cut through each other show by their edges; the place itself may be hidden.
+  std::set<int> crossing;
+  for (const CheckedCrossing& c : subject.crossings) crossing.insert({c.face_a, c.face_b});
+  for (size_t e = 0; e < subject.edges.size(); ++e) {
+    for (int face : subject.edges[e].faces) {
+      if (crossing.count(face) > 0) marked[e] = 1;
+    }
+  }
   ModelPictureInput input;
   input.mesh = mesh_of(loaded, common).mesh;
   input.lines.resize(kClasses);
@@ -58,6 +83,7 @@ Image draw_check(const LoadedModel& loaded, const CheckedModel& subject,
     input.lines[k].add(subject.edges[e].points);
     ++counts[k];
   }
+  if (!subject.crossings.empty()) input.lines.push_back(stars_at(subject));
   input.title = "check of " + loaded.path;
   input.caption.push_back(format("%d faults, %d warnings", faults, warnings));
   std::string legend;
@@ -65,6 +91,10 @@ Image draw_check(const LoadedModel& loaded, const CheckedModel& subject,
     if (counts[k] == 0) continue;
     legend += (legend.empty() ? "edges: " : "   ") + std::string(kEdgeClasses[k].word) + " " +
               std::to_string(counts[k]);
+  }
+  if (!subject.crossings.empty()) {
+    legend +=
+        "   green stars: faces cut through each other " + std::to_string(subject.crossings.size());
   }
   if (!legend.empty()) input.caption.push_back(legend);
   constexpr size_t kListed = 4;

@@ -11,6 +11,7 @@
 #include "model_source.h"
 #include "terminal.h"
 #ifdef ISOCHOR_WITH_OCCT
+#include "crossings_output.h"
 #include "import_output.h"
 #include "isochor/step/solid_findings.h"
 #endif
@@ -34,6 +35,23 @@ CheckedModel subject_of(const LoadedModel& loaded) {
   model.volume = loaded.volume;
   model.volume_bound = loaded.volume_bound;
   return model;
+}
+
+bool crossings_known(const LoadedModel& loaded) {
+#ifdef ISOCHOR_WITH_OCCT
+  return loaded.solid && loaded.solid->crossings;
+#else
+  (void)loaded;
+  return false;
+#endif
+}
+
+void print_crossings(const LoadedModel& loaded, const Common& common) {
+#ifdef ISOCHOR_WITH_OCCT
+  print(common, crossings_text(*loaded.solid, *loaded.solid->crossings));
+#else
+  (void)loaded, (void)common;
+#endif
 }
 
 struct Measures {
@@ -149,7 +167,14 @@ int run_check(const CheckOptions& options, const Common& common) {
   ShapeMeasures measures;
   measures.close = parse_close(options.close);
   measures.entities = true;
+  measures.crossings = options.self_intersections;
   const LoadedModel loaded = load_model(options.model, common, {}, measures);
+  measures.crossings = false;
+  if (options.self_intersections && !crossings_known(loaded)) {
+    throw InputError(options.model, "",
+                     "self-intersections are looked for in STEP, IGES and BREP files only; "
+                     "\"isochor convert\" makes one");
+  }
   std::optional<LoadedModel> original;
   if (!options.against.empty()) original = load_model(options.against, common, {}, measures);
   const CheckedModel subject = subject_of(loaded);
@@ -164,6 +189,7 @@ int run_check(const CheckOptions& options, const Common& common) {
   }
   print(common, valid ? "valid" : "not valid");
   print_findings(findings, common);
+  if (options.self_intersections) print_crossings(loaded, common);
   if (!loaded.opening.empty()) print(common, loaded.opening);
   if (!closing_text(loaded).empty()) print(common, closing_text(loaded));
   print(common,
@@ -194,6 +220,9 @@ int run_check(const CheckOptions& options, const Common& common) {
     result.set("area", loaded.solid->facts.area)
         .set("faces", static_cast<long>(loaded.solid->faces.size()))
         .set("import", to_value(loaded.solid->import));
+    if (loaded.solid->crossings) {
+      result.set("self_intersections", to_value(*loaded.solid, *loaded.solid->crossings));
+    }
   }
 #endif
   if (original) {

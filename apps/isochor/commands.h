@@ -64,6 +64,7 @@ int run_edit(const EditOptions& options, const Common& common);
 
 struct CheckOptions {
   std::string model, against, picture;
+  bool self_intersections = false;
   std::vector<std::string> close;
 };
 int run_check(const CheckOptions& options, const Common& common);

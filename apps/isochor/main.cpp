@@ -111,6 +111,8 @@ int run(int argc, char** argv) {
   sub->add_option("MODEL", check.model)->required();
   sub->add_option("--picture", check.picture,
                   "picture to write (PNG): edges by continuity, free edges red");
+  sub->add_flag("--self-intersections", check.self_intersections,
+                "also look for faces that cut through each other (CAD files)");
   sub->add_option("--against", check.against, "what changed since ORIGINAL, face by face");
   add_close(*sub, check.close);
   add_common(*sub, common);

@@ -199,6 +199,7 @@ SolidModel read_converted(const std::string& path, const Common& common,
   options.close = measures.close;
   options.below = measures.below;
   options.entities = measures.entities;
+  options.crossings = measures.crossings;
   SolidModel solid = read_solid(path, options);
   for (const std::string& name : convert) {
     const int face = find_face(solid, name);

@@ -47,6 +47,7 @@ struct ShapeMeasures {
   std::vector<ClosingPlane> close;  // planes that close the model
   std::optional<ClosingPlane> below = {};
   bool entities = false;      // the numbers of edges in STEP files
+  bool crossings = false;     // faces that cut through each other
   bool shared_trims = false;  // for edits that move trimming curves
 };
 

@@ -467,6 +467,44 @@ class Check(Scenario):
         for finding in self.run_json("check", self.open_cube(), code=1)["findings"]:
             self.assertEqual((finding["entity"], finding["face_entities"]), (None, []), "no STEP file")
 
+    def dipped_cube(self):
+        """A cube whose top is pushed down through its bottom, z = 0."""
+        model = json.loads(CUBE.read_text())
+        top = {k for row in model["patches"][0]["poles"] for k in row}
+        for k in top:
+            x, y, _ = model["points"][k]
+            if max(abs(x - 0.5), abs(y - 0.5)) < 0.3:
+                model["points"][k][2] = -0.1
+        (WORK / "dipped.isochor.json").write_text(json.dumps(model))
+        self.assertEqual(isochor("convert", "dipped.isochor.json", "dipped.step").returncode, 0)
+        return "dipped.step"
+
+    def test_faces_that_cut_through_each_other(self):
+        check = self.run_json("check", self.dipped_cube(), "--self-intersections", code=1)
+        pairs = check["self_intersections"]
+        self.assertEqual((pairs["pairs"], pairs["apart"], pairs["neighbours_apart"], pairs["crossing"]),
+                         (15, 2, 12, 1))
+        self.assertEqual((pairs["undecided"], pairs["undecided_pairs"]), (0, []))
+        self.assertEqual((pairs["faces"], pairs["faces_crossing"]), (6, 0))
+        self.assertEqual(pairs["faces_free"] + pairs["faces_undecided"], 6)
+        found, = [f for f in check["findings"] if f["kind"] == "self-intersection"]
+        self.assertEqual(found["severity"], "fault")
+        self.assertLess(abs(found["at"][2]), 1e-9, "the bottom is flat")
+        self.assertGreater(found["value"], found["limit"])
+        text = (WORK / "dipped.step").read_text()
+        for entity in found["face_entities"]:
+            self.assertRegex(text, entity + r"\s*=\s*ADVANCED_FACE\(")
+        self.assertEqual(len(found["face_entities"]), 2)
+        plain = json.loads(isochor("check", "dipped.step", "--json").stdout)
+        self.assertNotIn("self_intersections", plain, "not asked for")
+        done = isochor("check", "dipped.step", "--self-intersections", "--picture", "dipped.png")
+        self.assertIn("cut through each other at", done.stdout)
+        self.assertIn("15 pairs of faces: 2 proven apart", done.stdout)
+        self.assertTrue((WORK / "dipped.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_self_intersections_of_patch_models_are_not_looked_for(self):
+        self.expect(3, "check", CUBE, "--self-intersections", says="STEP, IGES and BREP files only")
+
     def test_volume_below_a_plane(self):
         below = self.run_json("volume", CUBE, "--below", "z=0.25")["below"]
         self.assertEqual((below["extent"], below["proven"]), ("part", True))

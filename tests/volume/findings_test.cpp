@@ -79,6 +79,25 @@ TEST(Findings, NameEntitiesOfTheFile) {
   EXPECT_EQ(invalid[1].text, "face:20: not there");
 }
 
+TEST(Findings, FacesThatCutThroughEachOtherAreFaultsOfABody) {
+  CheckedModel model = sound_cube();
+  model.faces[0].entity = "#10";
+  model.faces[1].entity = "#11";
+  model.crossings = {{0, 1, Vec3(1, 2, 3), 0.5, 1e-6, true},
+                     {1, 2, Vec3(0, 0, 1), 0.1, 1e-6, false}};
+  const auto found = of_kind(findings_of(model), "self-intersection");
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].severity, Severity::kFault);
+  EXPECT_EQ(found[0].at, Vec3(1, 2, 3));
+  EXPECT_EQ(found[0].face_entities, (std::vector<std::string>{"#10", "#11"}));
+  EXPECT_EQ(found[0].place, model.faces[0].label + " and " + model.faces[1].label);
+  EXPECT_GT(*found[0].value, *found[0].limit);
+  EXPECT_NE(found[0].text.find("cut through each other at (1 2 3) by 0.5"), std::string::npos)
+      << found[0].text;
+  EXPECT_EQ(found[1].severity, Severity::kWarning) << "two solids may be meant to overlap";
+  EXPECT_NE(found[1].text.find("of two solids [face #11]"), std::string::npos) << found[1].text;
+}
+
 TEST(Findings, WhatAReaderDidIsNoFaultWhatItLostIs) {
   CheckedModel model = sound_cube();
   model.import_warnings = {"sewn within 1e-06"};

@@ -60,6 +60,12 @@ CheckedModel checked(const SolidModel& solid, bool closed, const std::string& wh
     for (int face : facts.faces) model.faces[static_cast<size_t>(face)].perimeter += facts.length;
     model.edges.push_back(std::move(edge));
   }
+  if (solid.crossings) {
+    for (const Crossing& found : solid.crossings->found) {
+      model.crossings.push_back(
+          {found.face_a, found.face_b, found.at, found.depth, found.limit, found.one_body});
+    }
+  }
   return model;
 }
 

@@ -56,6 +56,7 @@ class Collector {
     }
     for (size_t e = 0; e < model_.edges.size(); ++e) judge_edge(static_cast<int>(e));
     for (const CheckedFace& face : model_.faces) judge_face(face);
+    for (const CheckedCrossing& crossing : model_.crossings) judge_crossing(crossing);
     judge_whole();
     std::stable_sort(found_.begin(), found_.end(), [](const Finding& a, const Finding& b) {
       if (a.severity != b.severity) return a.severity > b.severity;
@@ -144,6 +145,36 @@ class Collector {
                     -1,          face.entity,        {}};
     finding.text = face.label + " is " + print(width) + " " + model_.unit +
                    " wide, its tolerance is " + print(face.tolerance) + numbers_of(finding);
+    add(std::move(finding));
+  }
+
+  void judge_crossing(const CheckedCrossing& crossing) {
+    const CheckedFace& a = model_.faces[static_cast<size_t>(crossing.face_a)];
+    const CheckedFace& b = model_.faces[static_cast<size_t>(crossing.face_b)];
+    const bool itself = crossing.face_a == crossing.face_b;
+    std::ostringstream where;
+    where.precision(4);
+    where << " at (" << crossing.at.transpose() << ")";
+    Finding finding{"self-intersection",
+                    crossing.one_body ? Severity::kFault : Severity::kWarning,
+                    itself ? a.label : a.label + " and " + b.label,
+                    crossing.at,
+                    crossing.depth,
+                    crossing.limit,
+                    {},
+                    -1,
+                    "",
+                    {}};
+    if (itself) {
+      finding.entity = a.entity;
+    } else {
+      for (const CheckedFace* face : {&a, &b}) {
+        if (!face->entity.empty()) finding.face_entities.push_back(face->entity);
+      }
+    }
+    finding.text = finding.place + (itself ? " cuts through itself" : " cut through each other") +
+                   where.str() + " by " + print(crossing.depth) + " " + model_.unit + " or more" +
+                   (crossing.one_body ? "" : ", of two solids") + numbers_of(finding);
     add(std::move(finding));
   }
 

@@ -39,6 +39,14 @@ struct CheckedFace {
   std::string entity;  // as for edges
 };
 
+// Two faces that cut through each other; the same twice: one that cuts through itself.
+struct CheckedCrossing {
+  int face_a = 0, face_b = 0;  // indices into CheckedModel::faces
+  Vec3 at = Vec3::Zero();
+  double depth = 0.0, limit = 0.0;  // they reach through each other by more than `limit`
+  bool one_body = true;             // false: of two solids, which may be meant to overlap
+};
+
 struct CheckedModel {
   std::string unit;
   std::vector<CheckedEdge> edges;
@@ -51,6 +59,7 @@ struct CheckedModel {
   std::vector<std::string> import_faults;    // what the reader lost or could not understand
   std::vector<std::string> import_warnings;  // what it joined, or could have
   double diagonal = 0.0;
+  std::vector<CheckedCrossing> crossings;
 };
 
 // A model of patches alone; its joins are the edges between them.
