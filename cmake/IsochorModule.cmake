@@ -8,6 +8,34 @@ target_compile_options(isochor_options INTERFACE
   -ffp-contract=off  # fused multiply-add only where the code asks for it
   $<$<BOOL:${ISOCHOR_WERROR}>:-Werror>)
 
+# Headers to precompile, by ISOCHOR_PCH. Tests get all of the standard library from googletest anyway;
+# a module whose sources forget an include shows in any build but `all`.
+set(isochor_test_pch "")
+set(isochor_module_pch "")
+if(ISOCHOR_PCH STREQUAL "tests")
+  set(isochor_test_pch <gtest/gtest.h>)
+elseif(ISOCHOR_PCH STREQUAL "all")
+  set(isochor_module_pch
+    <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <numeric> <optional> <set>
+    <sstream> <string> <unordered_map> <utility> <vector> <Eigen/Dense>)
+  set(isochor_test_pch <gmock/gmock.h> <gtest/gtest.h> <random> ${isochor_module_pch})
+elseif(ISOCHOR_PCH)
+  message(FATAL_ERROR "ISOCHOR_PCH is '${ISOCHOR_PCH}', not tests, all or OFF")
+endif()
+
+# Precompiles the headers for the first target that asks; the others share them, for the flags agree.
+function(isochor_precompile target first)
+  if(NOT ARGN)
+    return()
+  endif()
+  if(target STREQUAL first)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  else()
+    target_precompile_headers(${target} REUSE_FROM ${first})
+  endif()
+  target_compile_options(${target} PRIVATE -fpch-preprocess)  # ccache asks for it
+endfunction()
+
 # isochor_add_module(<layer> [SOURCES ...] HEADERS ... [DEPENDS layer ...] [LINK public ...] [PRIVATE_LINK ...])
 # declares the library isochor::<layer> from the files of src/isochor/<layer>. Header-only libraries
 # under PRIVATE_LINK stay out of the installed package: its users never see them.
@@ -30,6 +58,7 @@ function(isochor_add_module layer)
     set(scope PUBLIC)
     add_library(${target} ${arg_SOURCES})
     target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:isochor_options> ${private_link})
+    isochor_precompile(${target} isochor_base ${isochor_module_pch})
   else()
     set(scope INTERFACE)
     add_library(${target} INTERFACE)
@@ -68,6 +97,7 @@ function(isochor_add_test_program target layer sources link labels)
   target_include_directories(${target} PRIVATE "${PROJECT_SOURCE_DIR}/tests")
   target_link_libraries(${target} PRIVATE isochor_options ${link} GTest::gmock GTest::gtest_main)
   target_compile_options(${target} PRIVATE ${ISOCHOR_TEST_OPTIONS})
+  isochor_precompile(${target} isochor_base_tests ${isochor_test_pch})
   target_compile_definitions(${target} PRIVATE
     ISOCHOR_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     ISOCHOR_BINARY_DIR="${CMAKE_BINARY_DIR}")

@@ -9,6 +9,9 @@ build_root=${ISOCHOR_BUILD_DIR:-$root/build}
 case $build_root in /*) ;; *) build_root=$PWD/$build_root ;; esac
 jobs=${ISOCHOR_JOBS:-$(nproc)}
 
+# Without these ccache keeps nothing that was compiled with precompiled headers.
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros}
+
 say() { printf '\n== %s\n' "$*"; }
 
 fail() {
