@@ -81,6 +81,16 @@ TEST(FluxField, RefusedPlanesAreNotRefusedForTheirOrder) {
   EXPECT_NE(text.find("no direction lies in all of them but one"), std::string::npos) << text;
 }
 
+TEST(FluxField, NormalsOfLengthOneKeepTheirDigits) {
+  for (const Vec3& normal :
+       {Vec3(-0.03125, 0, 1), Vec3(1, 2, 3), Vec3(0.3, -7, 11), Vec3(1e-9, 1, 5)}) {
+    const ClosingPlane once = closing_plane(normal, 4.5, "");
+    const ClosingPlane twice = closing_plane(once.normal, once.offset, "");
+    EXPECT_EQ(twice.normal, once.normal);
+    EXPECT_EQ(twice.offset, once.offset);
+  }
+}
+
 TEST(FluxField, PlanesAreReadAndPrinted) {
   EXPECT_EQ(text_of(parse_closing_plane("y=0")), "y = 0");
   EXPECT_EQ(text_of(parse_closing_plane("z=12.5")), "z = 12.5");

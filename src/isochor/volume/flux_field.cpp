@@ -84,10 +84,13 @@ std::vector<ClosingPlane> distinct(const std::vector<ClosingPlane>& planes) {
 }  // namespace
 
 ClosingPlane closing_plane(const Vec3& normal, double offset, const std::string& entity) {
-  const double length = normal.norm();
+  double length = normal.norm();
   if (!std::isfinite(length) || !(length > 0.0) || !std::isfinite(offset)) {
     throw InputError("", entity, "a plane needs a normal that is not zero, and a finite offset");
   }
+  // A normal that was divided once keeps its digits: scripts stay as they are when written and
+  // read.
+  if (std::abs(length - 1.0) <= 8.0 * kUnitRoundoff) length = 1.0;
   ClosingPlane plane;
   const int axis = axis_of(normal);
   if (axis >= 0) {  // no rounding
