@@ -142,7 +142,7 @@ def wishes(ledger, program, folder):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("continuity"))
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/continuity"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     ledger = Ledger()

@@ -212,7 +212,7 @@ def main():
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("folder", nargs="?", type=pathlib.Path,
                         default=os.environ.get("ISOCHOR_EXTRA_DATA"))
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("line_by_line"))
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/line_by_line"))
     parser.add_argument("--seconds", type=float, default=600)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)

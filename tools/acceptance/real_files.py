@@ -265,7 +265,7 @@ def counted(closed, first_class):
 
 
 def main():
-    options = options_of(__doc__.splitlines()[0], "isochor", 240.0, "real_files_out")
+    options = options_of(__doc__.splitlines()[0], "isochor", 240.0, "out/real_files")
     if not options.folder:
         return SKIPPED
     files = files_of(options.folder, SUFFIXES)

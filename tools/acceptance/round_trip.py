@@ -171,7 +171,7 @@ def examine(isochor, path, out, seconds):
 
 
 def main():
-    options = options_of(__doc__.splitlines()[0], "isochor", 600.0, "round_trip_out")
+    options = options_of(__doc__.splitlines()[0], "isochor", 600.0, "out/round_trip")
     if not options.folder:
         return SKIPPED
     files = files_of(options.folder, (".step", ".stp"))

@@ -180,7 +180,7 @@ def compare(ledger, twin, metre):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("isochor")
-    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("unit_twins_out"))
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/unit_twins"))
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     text = MODEL.read_text(encoding="latin-1")
