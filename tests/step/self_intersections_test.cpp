@@ -11,8 +11,6 @@
 #include <BRepPrimAPI_MakeCylinder.hxx>
 #include <BRepPrimAPI_MakeSphere.hxx>
 #include <BRepPrimAPI_MakeTorus.hxx>
-#include <BRep_Builder.hxx>
-#include <TopoDS_Compound.hxx>
 #include <cmath>
 #include <gp_Pln.hxx>
 
@@ -23,14 +21,6 @@
 
 namespace isochor::internal {
 namespace {
-
-TopoDS_Shape together(const std::vector<TopoDS_Shape>& parts) {
-  TopoDS_Compound compound;
-  BRep_Builder builder;
-  builder.MakeCompound(compound);
-  for (const TopoDS_Shape& part : parts) builder.Add(compound, part);
-  return compound;
-}
 
 CrossingsAccount crossings_of(const TopoDS_Shape& shape) {
   ReadOptions options;
@@ -87,7 +77,7 @@ TEST(SelfIntersections, CrossingSheetsAreFoundOnTheirLine) {
   for (double tilt : {0.02, 0.3, 1.2}) {
     const TopoDS_Shape other =
         sheet(gp_Pnt(0.25, 0, 0), gp_Dir(std::sin(tilt), 0, std::cos(tilt)), gp::DY(), 0.5, 0.5);
-    const CrossingsAccount account = crossings_of(together({flat, other}));
+    const CrossingsAccount account = crossings_of(shapes::together({flat, other}));
     ASSERT_EQ(account.found.size(), 1u) << tilt;
     const Crossing& found = account.found.front();
     EXPECT_NEAR(found.at.x(), 0.25, 1e-8);  // the line x = 0.25, z = 0
@@ -104,7 +94,7 @@ TEST(SelfIntersections, ASphereThroughABoxMeetsItInCircles) {
   const TopoDS_Shape box = BRepPrimAPI_MakeBox(gp_Pnt(-3, -3, -3), gp_Pnt(3, 3, 2.8)).Shape();
   const TopoDS_Shape ball = BRepPrimAPI_MakeSphere(gp_Pnt(0.4, 0.3, 2), 1.0).Shape();
   for (bool spline : {false, true}) {
-    const TopoDS_Shape both = together({box, ball});
+    const TopoDS_Shape both = shapes::together({box, ball});
     const CrossingsAccount account = crossings_of(spline ? splines(both) : both);
     ASSERT_EQ(account.found.size(), 1u);
     EXPECT_EQ(account.undecided, 0);
@@ -119,7 +109,7 @@ TEST(SelfIntersections, HolesAreNoFaces) {
   // A pin through the hole of a plate, with a gap all round.
   const TopoDS_Shape pin =
       BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0.5, 0.5, -1), gp::DZ()), 0.05, 4).Shape();
-  const CrossingsAccount clear = crossings_of(together({shapes::holed_cube(), pin}));
+  const CrossingsAccount clear = crossings_of(shapes::together({shapes::holed_cube(), pin}));
   EXPECT_EQ(clear.crossing, 0);
   EXPECT_EQ(clear.undecided, 0);
 }
@@ -128,13 +118,13 @@ TEST(SelfIntersections, NearMissesAreApart) {
   const TopoDS_Shape flat = sheet(gp_Pnt(0, 0, 0), gp::DZ(), gp::DX(), 1, 1);
   for (double gap : {1e-2, 1e-4, 1e-6}) {
     const TopoDS_Shape above = sheet(gp_Pnt(0.3, 0.2, gap), gp::DZ(), gp::DX(), 1, 1);
-    EXPECT_EQ(crossings_of(posed(together({flat, above}))).apart, 1) << gap;
+    EXPECT_EQ(crossings_of(posed(shapes::together({flat, above}))).apart, 1) << gap;
     const TopoDS_Shape wall = sheet(gp_Pnt(0.3, 0.2, 1 + gap), gp::DX(), gp::DZ(), 1, 0.5);
-    EXPECT_EQ(crossings_of(posed(together({flat, wall}))).apart, 1) << gap;
+    EXPECT_EQ(crossings_of(posed(shapes::together({flat, wall}))).apart, 1) << gap;
   }
   const TopoDS_Shape inner = BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 0), 0.99).Shape();
   const TopoDS_Shape outer = BRepPrimAPI_MakeSphere(gp_Pnt(0, 0, 0), 1.0).Shape();
-  EXPECT_EQ(crossings_of(splines(together({inner, outer}))).apart, 1);
+  EXPECT_EQ(crossings_of(splines(shapes::together({inner, outer}))).apart, 1);
 }
 
 TEST(SelfIntersections, TouchesAreNeverCalledCrossings) {
@@ -146,7 +136,7 @@ TEST(SelfIntersections, TouchesAreNeverCalledCrossings) {
   const TopoDS_Shape again = sheet(gp_Pnt(0.5, 0, 0), gp::DZ(), gp::DY(), 1, 1);
   const TopoDS_Shape dented = BRepPrimAPI_MakeSphere(gp_Pnt(0.1, 0.2, 1 - 1e-9), 1.0).Shape();
   for (const TopoDS_Shape& other : {ball, lying, standing, again, dented}) {
-    const CrossingsAccount account = crossings_of(together({flat, posed(ball), other}));
+    const CrossingsAccount account = crossings_of(shapes::together({flat, posed(ball), other}));
     for (const Crossing& found : account.found) EXPECT_NE(found.face_a, 0) << found.at.transpose();
     EXPECT_GE(account.undecided, 1);
   }
@@ -187,7 +177,7 @@ TEST(SelfIntersections, AFoldedFaceMeetsItselfWhereItsCurveDoes) {
 TEST(SelfIntersections, TwoBoxesOverEachOther) {
   const TopoDS_Shape a = BRepPrimAPI_MakeBox(gp_Pnt(0, 0, 0), gp_Pnt(2, 2, 2)).Shape();
   const TopoDS_Shape b = BRepPrimAPI_MakeBox(gp_Pnt(1, 1, 1), gp_Pnt(3, 3, 3)).Shape();
-  const CrossingsAccount account = crossings_of(together({a, b}));
+  const CrossingsAccount account = crossings_of(shapes::together({a, b}));
   EXPECT_EQ(account.crossing, 6);  // three faces of each, each with two of the other
   EXPECT_EQ(account.undecided, 0);
   for (const Crossing& found : account.found) {

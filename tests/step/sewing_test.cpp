@@ -12,7 +12,6 @@
 #include <TopExp.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
-#include <TopoDS_Compound.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
 #include <XCAFDoc_ShapeTool.hxx>
 #include <algorithm>
@@ -45,18 +44,10 @@ TopoDS_Shape box_at(double x) {
   return BRepPrimAPI_MakeBox(gp_Pnt(x, 0.0, 0.0), 1.0, 2.0, 3.0).Shape();
 }
 
-TopoDS_Compound together(const std::vector<TopoDS_Shape>& parts) {
-  BRep_Builder builder;
-  TopoDS_Compound compound;
-  builder.MakeCompound(compound);
-  for (const TopoDS_Shape& part : parts) builder.Add(compound, part);
-  return compound;
-}
-
 Document document_of(const std::vector<TopoDS_Shape>& faces) {
   Document document;
   document.path = "loose.brep";
-  document.shape = together(faces);
+  document.shape = shapes::together(faces);
   index_document(document);
   return document;
 }
@@ -171,7 +162,7 @@ TEST(Sewing, OneFaceInTwoPlacesIsNotSewn) {
 TEST(Sewing, AssembliesAreNotSewn) {
   const TempFolder folder;
   const auto faces = loose_faces(box_at(0.0));
-  const TopoDS_Compound half = together({faces[0], faces[2]});
+  const TopoDS_Shape half = shapes::together({faces[0], faces[2]});
   gp_Trsf aside;
   aside.SetTranslation(gp_Vec(9.0, 0.0, 0.0));
   Document rack = shapes::placed(half, {gp_Trsf(), aside});
@@ -192,7 +183,7 @@ TEST(Sewing, EditedFilesAreReadBackInOrder) {
   for (const std::string ending : {"step", "igs", "brep"}) {
     SCOPED_TRACE(ending);
     const std::string input = folder.file("in." + ending);
-    Document loose = shapes::document_of(together(faces));
+    Document loose = shapes::document_of(shapes::together(faces));
     write_document(loose, input);
     const Document document = load_document(input);
     ASSERT_TRUE(document.sewn()) << document.account.sewing.declined;

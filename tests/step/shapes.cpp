@@ -9,6 +9,7 @@
 #include <BRepLib.hxx>
 #include <BRepPrimAPI_MakeBox.hxx>
 #include <BRepPrimAPI_MakeCylinder.hxx>
+#include <BRep_Builder.hxx>
 #include <BRep_Tool.hxx>
 #include <Geom_ToroidalSurface.hxx>
 #include <Quantity_Color.hxx>
@@ -18,6 +19,7 @@
 #include <TDataStd_Name.hxx>
 #include <TopExp_Explorer.hxx>
 #include <TopoDS.hxx>
+#include <TopoDS_Compound.hxx>
 #include <TopoDS_Shell.hxx>
 #include <XCAFDoc_ColorTool.hxx>
 #include <XCAFDoc_DocumentTool.hxx>
@@ -163,6 +165,14 @@ TopoDS_Shape holed_plate() {
   const TopoDS_Shape hole =
       BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0.3, 0.4, -5), gp::DZ()), 0.7, 10).Shape();
   return BRepAlgoAPI_Cut(box, hole).Shape();
+}
+
+TopoDS_Shape together(const std::vector<TopoDS_Shape>& parts) {
+  BRep_Builder builder;
+  TopoDS_Compound compound;
+  builder.MakeCompound(compound);
+  for (const TopoDS_Shape& part : parts) builder.Add(compound, part);
+  return compound;
 }
 
 TopoDS_Solid cylinder(double radius, double height) {

@@ -29,6 +29,9 @@ TopoDS_Shape holed_cube();
 // A plate 4 x 6 x 2 about the origin with a round hole of radius 0.7 at (0.3, 0.4).
 TopoDS_Shape holed_plate();
 
+// A compound of the shapes.
+TopoDS_Shape together(const std::vector<TopoDS_Shape>& parts);
+
 TopoDS_Solid cylinder(double radius = 0.5, double height = 2.0);
 
 // A lens around z between two planar caps: its side is a torus whose tube is wider than its hole.

@@ -34,12 +34,13 @@ double diagonal_of(const TopoDS_Shape& shape) {
   return box.IsVoid() ? 0.0 : std::sqrt(box.SquareExtent());
 }
 
-// An edge and a face that uses it, with the edge's ends and middle.
-struct EdgeUse {
+// Where an edge runs, by its ends and its middle; with a face that uses it.
+struct EdgeRun {
   TopoDS_Face face;
+  bool free = false;  // no other face does
   std::array<gp_Pnt, 3> places;
 
-  EdgeUse(const TopoDS_Edge& edge, TopoDS_Face by) : face(std::move(by)) {
+  EdgeRun(const TopoDS_Edge& edge, TopoDS_Face by, bool alone) : face(std::move(by)), free(alone) {
     const BRepAdaptor_Curve curve(edge);
     const double a = curve.FirstParameter(), b = curve.LastParameter();
     places = {curve.Value(a), curve.Value(0.5 * (a + b)), curve.Value(b)};
@@ -50,7 +51,7 @@ struct EdgeUse {
   // As short as the tolerance, as far as the middle tells.
   bool within(double tolerance) const { return places[0].Distance(places[1]) <= tolerance; }
 
-  bool along(const EdgeUse& other, double tolerance) const {
+  bool along(const EdgeRun& other, double tolerance) const {
     const auto near = [&](int k, int l) {
       return places[static_cast<size_t>(k)].Distance(other.places[static_cast<size_t>(l)]) <=
              tolerance;
@@ -100,32 +101,28 @@ bool has_no_area(const TopoDS_Face& face, double tolerance) {
 // Whether a free edge runs within the tolerance of a shared one, or of two other free ones: three
 // faces that have an area, or more, meet there.
 bool third_face(const TopoDS_Shape& shape, double tolerance) {
-  struct Run {
-    EdgeUse use;
-    bool free;
-  };
-  std::vector<Run> runs;
+  std::vector<EdgeRun> runs;
   for_each_edge(shape, [&](const TopoDS_Edge& edge, const TopoDS_Face& face, bool free) {
-    EdgeUse use(edge, face);
-    if (!use.within(tolerance)) runs.push_back({std::move(use), free});
+    EdgeRun run(edge, face, free);
+    if (!run.within(tolerance)) runs.push_back(std::move(run));
   });
   std::sort(runs.begin(), runs.end(),
-            [](const Run& a, const Run& b) { return a.use.x() < b.use.x(); });
-  const auto sum_along = [&](const EdgeUse& own, const auto& faces) {
+            [](const EdgeRun& a, const EdgeRun& b) { return a.x() < b.x(); });
+  const auto sum_along = [&](const EdgeRun& own, const auto& faces) {
     const auto first = std::lower_bound(runs.begin(), runs.end(), own.x() - tolerance,
-                                        [](const Run& run, double x) { return run.use.x() < x; });
+                                        [](const EdgeRun& run, double x) { return run.x() < x; });
     int sum = 0;
-    for (auto it = first; it != runs.end() && it->use.x() <= own.x() + tolerance; ++it) {
-      if (it->use.along(own, tolerance)) sum += faces(*it);
+    for (auto it = first; it != runs.end() && it->x() <= own.x() + tolerance; ++it) {
+      if (it->along(own, tolerance)) sum += faces(*it);
     }
     return sum;
   };
-  const auto faces = [](const Run& run) { return run.free ? 1 : 2; };
-  const auto faces_with_area = [&](const Run& run) {
-    return run.free && has_no_area(run.use.face, tolerance) ? 0 : faces(run);
+  const auto faces = [](const EdgeRun& run) { return run.free ? 1 : 2; };
+  const auto faces_with_area = [&](const EdgeRun& run) {
+    return run.free && has_no_area(run.face, tolerance) ? 0 : faces(run);
   };
-  return std::any_of(runs.begin(), runs.end(), [&](const Run& run) {
-    return run.free && sum_along(run.use, faces) >= 3 && sum_along(run.use, faces_with_area) >= 3;
+  return std::any_of(runs.begin(), runs.end(), [&](const EdgeRun& run) {
+    return run.free && sum_along(run, faces) >= 3 && sum_along(run, faces_with_area) >= 3;
   });
 }
 

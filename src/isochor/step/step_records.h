@@ -27,7 +27,7 @@ struct StepArgument {
 };
 
 struct StepRecord {
-  TextSpan ident;           // "#12"; empty: see below
+  TextSpan ident;           // "#12"; empty for lists, the header and further parts of one entity
   TextSpan type;            // the keyword; empty: a list without one
   std::uint32_t list = 0;   // not 0: a list inside a record, which follows
   std::uint32_t first = 0;  // its arguments
